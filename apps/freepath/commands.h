@@ -1,0 +1,15 @@
+#pragma once
+/// @file The subcommands of the program, one file each. Each function adds its subcommand, whose
+/// callback does the work and throws freepath::Error (or a CLI11 error) where it can't.
+
+#include <CLI/CLI.hpp>
+
+namespace freepath::program {
+
+void add_render_command(CLI::App& program);
+void add_info_command(CLI::App& program);
+void add_generate_command(CLI::App& program);
+void add_slab_command(CLI::App& program);
+void add_diff_command(CLI::App& program);
+
+}  // namespace freepath::program

@@ -1,0 +1,41 @@
+// freepath: the program. Parses the command line, runs one subcommand and turns an error into one
+// line on standard error and a non-zero exit status.
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "apps/freepath/commands.h"
+#include "freepath/base/error.h"
+#include "freepath/base/version.h"
+
+int main(int argc, char** argv) {
+  CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
+  program.set_version_flag("--version", freepath::version());
+  program.require_subcommand(1);
+  program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  program.footer("freepath COMMAND --help explains a command, with examples.");
+  using namespace freepath::program;
+  add_render_command(program);
+  add_info_command(program);
+  add_generate_command(program);
+  add_slab_command(program);
+  add_diff_command(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error);
+  } catch (const freepath::Error& error) {
+    fmt::print(stderr, "freepath: error: {}\n", error.what());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "freepath: error: out of memory\n");
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "freepath: internal error: {}\n", error.what());
+    return 3;
+  }
+  return 0;
+}

@@ -1,0 +1,7 @@
+#include "apps/freepath/commands.h"
+
+namespace freepath::program {
+
+void add_render_command(CLI::App&) {}
+
+}  // namespace freepath::program

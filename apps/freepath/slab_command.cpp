@@ -1,0 +1,7 @@
+#include "apps/freepath/commands.h"
+
+namespace freepath::program {
+
+void add_slab_command(CLI::App&) {}
+
+}  // namespace freepath::program

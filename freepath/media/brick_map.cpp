@@ -1,0 +1,144 @@
+#include "freepath/media/brick_map.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+constexpr int64_t kMaxIndexEntries = int64_t{1} << 28;  // 1 GiB of index
+constexpr std::size_t kMaxBricks = (std::size_t{1} << 31) / BrickMap::kBrickVoxels;
+
+int brick_of(int voxel) { return voxel >> 3; }  // floor, for negative coordinates too
+
+std::size_t voxel_offset(const Vec3i& voxel) {
+  return static_cast<std::size_t>((voxel.x & 7) << 6 | (voxel.y & 7) << 3 | (voxel.z & 7));
+}
+
+}  // namespace
+
+float BrickMap::value(const Vec3i& voxel) const {
+  const Vec3i brick(brick_of(voxel.x - origin_.x), brick_of(voxel.y - origin_.y),
+                    brick_of(voxel.z - origin_.z));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (brick[axis] < 0 || brick[axis] >= brick_counts_[axis]) return 0.0F;
+  }
+  const std::size_t entry =
+      (static_cast<std::size_t>(brick.x) * brick_counts_.y + brick.y) * brick_counts_.z + brick.z;
+  return voxels_[std::size_t{index_[entry]} * kBrickVoxels + voxel_offset(voxel)];
+}
+
+double BrickMap::interpolate(const Vec3d& point) const {
+  const Vec3i base(static_cast<int>(std::floor(point.x)), static_cast<int>(std::floor(point.y)),
+                   static_cast<int>(std::floor(point.z)));
+  const Vec3d fraction = point - Vec3d(base);
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3i offset(corner >> 2, (corner >> 1) & 1, corner & 1);
+    double weight = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      weight *= offset[axis] != 0 ? fraction[axis] : 1 - fraction[axis];
+    }
+    sum += weight * value(base + offset);
+  }
+  return sum;
+}
+
+std::size_t BrickMap::memory_bytes() const {
+  return index_.capacity() * sizeof(index_[0]) + voxels_.capacity() * sizeof(voxels_[0]);
+}
+
+BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max,
+                                 std::size_t brick_capacity) {
+  map_.active_min_ = active_min;
+  map_.active_max_ = active_max;
+  if (map_.empty()) return;
+  int64_t entries = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr int kLimit = 1 << 29;
+    if (active_min[axis] < -kLimit || active_max[axis] > kLimit) {
+      fail("voxel coordinates reach from {} to {}, more than {} away from the origin: crop the grid",
+           active_min[axis], active_max[axis], kLimit);
+    }
+    const int first = brick_of(active_min[axis] - 2);
+    const int last = brick_of(active_max[axis] + 2);
+    map_.origin_[axis] = first * BrickMap::kBrickSize;
+    map_.brick_counts_[axis] = last - first + 1;
+    entries *= map_.brick_counts_[axis];
+    if (entries > kMaxIndexEntries) {
+      fail(
+          "the active voxels span {} x {} x {}, too many for a dense index of bricks: crop the grid "
+          "or split it into several",
+          active_max.x - active_min.x + 1, active_max.y - active_min.y + 1,
+          active_max.z - active_min.z + 1);
+    }
+  }
+  map_.index_.assign(static_cast<std::size_t>(entries), 0);
+  map_.voxels_.reserve((brick_capacity + 1) * BrickMap::kBrickVoxels);
+  new_brick();  // brick 0, the empty one
+}
+
+uint32_t& BrickMapBuilder::entry(const Vec3i& brick) {
+  Vec3i place;
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = brick[axis] - map_.origin_[axis] / BrickMap::kBrickSize;
+    if (place[axis] < 0 || place[axis] >= map_.brick_counts_[axis]) {
+      fail("brick ({}, {}, {}) lies outside the bounds given for the brick map", brick.x, brick.y,
+           brick.z);
+    }
+  }
+  const Vec3i& counts = map_.brick_counts_;
+  return map_
+      .index_[(static_cast<std::size_t>(place.x) * counts.y + place.y) * counts.z + place.z];
+}
+
+uint32_t BrickMapBuilder::new_brick() {
+  const std::size_t brick = map_.brick_count();
+  if (brick >= kMaxBricks) {
+    fail("more than {} bricks of 8x8x8 voxels: the grid is too large, resample or split it",
+         kMaxBricks);
+  }
+  map_.voxels_.resize(map_.voxels_.size() + BrickMap::kBrickVoxels, 0.0F);
+  shared_.push_back(brick == 0);
+  return static_cast<uint32_t>(brick);
+}
+
+std::span<float, BrickMap::kBrickVoxels> BrickMapBuilder::add_brick(const Vec3i& brick) {
+  uint32_t& place = entry(brick);
+  if (shared_[place]) place = new_brick();
+  return std::span<float, BrickMap::kBrickVoxels>(
+      map_.voxels_.data() + std::size_t{place} * BrickMap::kBrickVoxels, BrickMap::kBrickVoxels);
+}
+
+void BrickMapBuilder::add_constant_brick(const Vec3i& brick, float value) {
+  if (value == 0.0F) return;
+  const auto [found, inserted] = constants_.try_emplace(std::bit_cast<uint32_t>(value), 0);
+  if (inserted) {
+    found->second = new_brick();
+    shared_[found->second] = true;
+    const auto first = map_.voxels_.end() - BrickMap::kBrickVoxels;
+    std::fill(first, map_.voxels_.end(), value);
+  }
+  entry(brick) = found->second;
+}
+
+void BrickMapBuilder::set_voxel(const Vec3i& voxel, float value) {
+  const Vec3i brick(brick_of(voxel.x), brick_of(voxel.y), brick_of(voxel.z));
+  const uint32_t before = entry(brick);
+  if (shared_[before]) {
+    const uint32_t copy = new_brick();
+    std::copy_n(map_.voxels_.begin() + std::size_t{before} * BrickMap::kBrickVoxels,
+                BrickMap::kBrickVoxels,
+                map_.voxels_.begin() + std::size_t{copy} * BrickMap::kBrickVoxels);
+    entry(brick) = copy;
+  }
+  map_.voxels_[std::size_t{entry(brick)} * BrickMap::kBrickVoxels + voxel_offset(voxel)] = value;
+}
+
+BrickMap BrickMapBuilder::finish() && { return std::move(map_); }
+
+}  // namespace freepath

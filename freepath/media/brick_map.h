@@ -1,0 +1,87 @@
+#pragma once
+/// @file The store of voxels: 8³ bricks behind a dense index.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "freepath/base/vector.h"
+
+namespace freepath {
+
+/// A sparse grid of floats: a dense index of 8³ bricks over the active bounds, and all bricks in one
+/// array. Brick 0 is the empty one (all zero). A brick of one constant value is stored once.
+///
+/// The centre of voxel (i,j,k) is the point (i,j,k) of index space. The index covers the bounds of
+/// the active voxels grown by two on every side, so that a tap of the trilinear filter anywhere
+/// within one voxel of the bounds reads it without a check.
+class BrickMap {
+ public:
+  static constexpr int kBrickSize = 8;
+  static constexpr int kBrickVoxels = kBrickSize * kBrickSize * kBrickSize;
+
+  /// Inclusive bounds of the active voxels [index]; empty (max < min) where there are none.
+  const Vec3i& active_min() const { return active_min_; }
+  const Vec3i& active_max() const { return active_max_; }
+  bool empty() const { return active_max_.x < active_min_.x; }
+
+  /// First voxel of the index's first brick, a multiple of 8 [index].
+  const Vec3i& origin() const { return origin_; }
+  /// Bricks of the index along each axis.
+  const Vec3i& brick_counts() const { return brick_counts_; }
+
+  /// Brick of each index entry, x slowest: entry = (bx · ny + by) · nz + bz.
+  std::span<const uint32_t> index() const { return index_; }
+  /// Voxels of all bricks; voxel (x,y,z) of brick b is at b·512 + 64x + 8y + z.
+  std::span<const float> voxels() const { return voxels_; }
+  std::size_t brick_count() const { return voxels_.size() / kBrickVoxels; }
+
+  /// Value of a voxel, 0 outside [index].
+  float value(const Vec3i& voxel) const;
+
+  /// Trilinear interpolant at an index-space point, the exact one that bounds are made for.
+  double interpolate(const Vec3d& point) const;
+
+  /// Bytes of index and voxels.
+  std::size_t memory_bytes() const;
+
+ private:
+  friend class BrickMapBuilder;
+  Vec3i active_min_{0}, active_max_{-1}, origin_{0}, brick_counts_{0};
+  std::vector<uint32_t> index_;
+  std::vector<float> voxels_;
+};
+
+/// Fills a BrickMap brick by brick.
+///
+/// @note Brick coordinates are voxel coordinates divided by 8 (floor), as OpenVDB's leaf origins.
+class BrickMapBuilder {
+ public:
+  /// @param active_min,active_max inclusive bounds of the active voxels [index]
+  /// @param brick_capacity how many distinct bricks to reserve; more may be added
+  /// @throws Error if the bounds need an index larger than kMaxIndexEntries, or more voxels than a
+  ///   32-bit offset can address
+  BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max, std::size_t brick_capacity);
+
+  /// The 512 voxels of a new brick, zero at first, to be written (offset 64x + 8y + z). The span is
+  /// valid until the next call.
+  std::span<float, BrickMap::kBrickVoxels> add_brick(const Vec3i& brick);
+  /// Sets a whole brick to one value, stored once for each value.
+  void add_constant_brick(const Vec3i& brick, float value);
+  /// Writes one voxel of a brick that may exist already.
+  void set_voxel(const Vec3i& voxel, float value);
+
+  BrickMap finish() &&;
+
+ private:
+  uint32_t& entry(const Vec3i& brick);
+  uint32_t new_brick();
+
+  BrickMap map_;
+  std::unordered_map<uint32_t, uint32_t> constants_;  // bits of the value → brick
+  std::vector<bool> shared_;                          // bricks that several entries may name
+};
+
+}  // namespace freepath

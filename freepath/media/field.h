@@ -1,0 +1,19 @@
+#pragma once
+/// @file A scalar field read from a file or made by a program: voxels in a brick map, and where
+/// they stand in the world.
+
+#include <string>
+
+#include "freepath/base/vector.h"
+#include "freepath/media/brick_map.h"
+
+namespace freepath {
+
+/// A scalar density field.
+struct Field {
+  std::string name;             ///< Name of the grid, for messages.
+  BrickMap voxels;              ///< Values; 0 outside.
+  Matrix4d index_to_world{};    ///< Affine; the centre of voxel (i,j,k) is the index point (i,j,k).
+};
+
+}  // namespace freepath
