@@ -2,6 +2,7 @@
 /// @file Statistics for tests of Monte Carlo code: estimates with their standard errors, z-tests,
 /// chi-square and binomial tests, and the level of a family of tests. How they are used, and why
 /// with fixed seeds, is told in docs/testing.md.
+/// @note Within namespace freepath GoogleTest's own names need a leading colon: `::testing::Test`.
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,172 @@
+#include "freepath/base/random.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/statistics.h"
+
+namespace freepath {
+namespace {
+
+using testing::check_chi_square;
+using testing::check_mean;
+using testing::chi_square_test;
+using testing::RunningStatistics;
+
+using Words = std::array<uint32_t, 4>;
+using Key = std::array<uint32_t, 2>;
+
+// The known answers that the authors of [Salmon11] publish with their library Random123.
+TEST(Philox, GivesThePublishedAnswersForTenRounds) {
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}, 10),
+            (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  constexpr uint32_t kOnes = 0xffffffff;
+  EXPECT_EQ(philox({kOnes, kOnes, kOnes, kOnes}, {kOnes, kOnes}, 10),
+            (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  // Digits of pi, "nothing up my sleeve".
+  EXPECT_EQ(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}, 10),
+            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(Philox, GivesThePublishedAnswerForSevenRounds) {
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}, 7),
+            (Words{0x5f6fb709, 0x0d893f64, 0x4f121f81, 0x4f730a48}));
+  static_assert(kPhiloxRounds == 7, "the default is the variant tested here");
+}
+
+TEST(Philox, EveryBitOfCounterAndKeyFlipsHalfOfTheOutput) {
+  const Words counter{1, 2, 3, 4};
+  const Key key{5, 6};
+  for (int bit = 0; bit < 192; ++bit) {
+    RunningStatistics flipped;
+    for (uint32_t block = 0; block < 64; ++block) {
+      Words other_counter{block, counter[1], counter[2], counter[3]};
+      const Words before = philox(other_counter, key);
+      Key other_key = key;
+      uint32_t& word = bit < 128 ? other_counter[bit / 32] : other_key[bit / 32 - 4];
+      word ^= 1U << (bit % 32);
+      const Words after = philox(other_counter, other_key);
+      for (int i = 0; i < 4; ++i) flipped.add(std::popcount(before[i] ^ after[i]));
+    }
+    // 32 fair bits: mean 16, standard deviation sqrt(8); 192 tests at a family-wise level of 1e-4.
+    EXPECT_TRUE(check_mean("flipped bits", flipped.mean(),
+                           std::sqrt(8.0 / static_cast<double>(flipped.count())), flipped.count(),
+                           16, {.z = testing::family_wise_threshold(1e-4, 192)}))
+        << "bit " << bit;
+  }
+}
+
+TEST(OpenUniform, IsNeverZeroAndNeverAboveOne) {
+  EXPECT_GT(open_uniform_from_bits(0), 0.0F);
+  EXPECT_LE(open_uniform_from_bits(0xffffffff), 1.0F);
+  EXPECT_EQ(open_uniform_from_bits(0), 0x1p-32F);  // the largest exponential is 32 log 2 = 22.18
+  for (uint32_t bits = 0; bits < 4096; ++bits) {
+    EXPECT_GT(open_uniform_from_bits(bits), 0.0F) << bits;
+    EXPECT_LE(open_uniform_from_bits(~bits), 1.0F) << bits;
+    EXPECT_GE(open_uniform_from_bits(bits + 1), open_uniform_from_bits(bits)) << bits;
+  }
+}
+
+TEST(Uniform, ReachesZeroButNotOne) {
+  EXPECT_EQ(uniform_from_bits(0), 0.0F);
+  EXPECT_LT(uniform_from_bits(0xffffffff), 1.0F);
+  EXPECT_EQ(uniform_from_bits(0xffffffff), 1 - 0x1p-24F);
+}
+
+TEST(RandomStream, UniformNumbersFillEveryBinAlike) {
+  constexpr int kBins = 1024;
+  constexpr int kNumbers = 1 << 20;
+  for (const uint64_t seed : {uint64_t{0}, uint64_t{1}, uint64_t{1} << 40}) {
+    RandomStream stream(seed, 17, 3, 0);
+    std::vector<uint64_t> counts(kBins);
+    for (int i = 0; i < kNumbers; ++i) {
+      ++counts[static_cast<std::size_t>(stream.uniform() * kBins)];
+    }
+    const std::vector<double> expected(kBins, double{kNumbers} / kBins);
+    EXPECT_TRUE(check_chi_square("uniform", chi_square_test(counts, expected))) << "seed " << seed;
+  }
+}
+
+TEST(RandomStream, FirstNumbersOfManyPathsFillPairsOfBinsAlike) {
+  // The first two numbers of each of 2^20 paths: what decides the picture is how paths differ.
+  constexpr int kSide = 32;
+  std::vector<uint64_t> counts(kSide * kSide);
+  for (uint32_t pixel = 0; pixel < 1024; ++pixel) {
+    for (uint32_t sample = 0; sample < 1024; ++sample) {
+      RandomStream stream(0, pixel, sample, 0);
+      const auto first = static_cast<std::size_t>(stream.uniform() * kSide);
+      ++counts[first * kSide + static_cast<std::size_t>(stream.uniform() * kSide)];
+    }
+  }
+  const std::vector<double> expected(kSide * kSide, 1024.0);
+  EXPECT_TRUE(check_chi_square("pairs", chi_square_test(counts, expected)));
+}
+
+TEST(RandomStream, ExponentialNumbersFollowTheirLaw) {
+  // Bins of width 1/8 up to 8 and one beyond; P(bin) = exp(-a) - exp(-b).
+  constexpr int kBins = 65;
+  constexpr int kNumbers = 1 << 20;
+  RandomStream stream(5, 0, 0, 0);
+  std::vector<uint64_t> counts(kBins);
+  RunningStatistics statistics;
+  for (int i = 0; i < kNumbers; ++i) {
+    const float value = stream.exponential();
+    ASSERT_TRUE(std::isfinite(value) && value >= 0) << value;
+    statistics.add(value);
+    ++counts[std::min<std::size_t>(static_cast<std::size_t>(value * 8), kBins - 1)];
+  }
+  std::vector<double> expected(kBins);
+  for (int bin = 0; bin < kBins; ++bin) {
+    const double end = bin + 1 < kBins ? std::exp(-(bin + 1) / 8.0) : 0;
+    expected[bin] = kNumbers * (std::exp(-bin / 8.0) - end);
+  }
+  EXPECT_TRUE(check_chi_square("exponential", chi_square_test(counts, expected)));
+  EXPECT_TRUE(check_mean("mean", statistics, 1));
+}
+
+TEST(RandomStream, IsAFunctionOfItsPlace) {
+  RandomStream first(9, 8, 7, 6);
+  RandomStream second(9, 8, 7, 6);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(first.bits(), second.bits());
+}
+
+TEST(RandomStream, StreamsThatDifferInOneWordAreUncorrelated) {
+  constexpr int kNumbers = 100'000;
+  const std::array<RandomStream, 6> streams{
+      RandomStream(0, 0, 0, 0), RandomStream(1, 0, 0, 0), RandomStream(uint64_t{1} << 32, 0, 0, 0),
+      RandomStream(0, 1, 0, 0), RandomStream(0, 0, 1, 0), RandomStream(0, 0, 0, 1)};
+  for (std::size_t a = 0; a < streams.size(); ++a) {
+    for (std::size_t b = a + 1; b < streams.size(); ++b) {
+      RandomStream left = streams[a];
+      RandomStream right = streams[b];
+      RunningStatistics product;  // of two independent uniforms around 0: mean 0
+      for (int i = 0; i < kNumbers; ++i) {
+        product.add((left.uniform() - 0.5) * (right.uniform() - 0.5));
+      }
+      EXPECT_TRUE(
+          check_mean("covariance", product, 0, {.z = testing::family_wise_threshold(1e-4, 15)}))
+          << a << " and " << b;
+    }
+  }
+}
+
+TEST(StreamNumber, DiffersForEveryPurposeAndBounce) {
+  std::set<uint32_t> numbers;
+  for (uint32_t bounce = 0; bounce < 100; ++bounce) {
+    for (const StreamPurpose purpose : {StreamPurpose::kWalk, StreamPurpose::kShadowWalk,
+                                        StreamPurpose::kScatter, StreamPurpose::kCamera}) {
+      numbers.insert(stream_number(purpose, bounce));
+    }
+  }
+  EXPECT_EQ(numbers.size(), 400U);
+}
+
+}  // namespace
+}  // namespace freepath
