@@ -7,6 +7,6 @@ target_compile_options(freepath_options INTERFACE -ffp-contract=off -fno-math-er
                        $<$<BOOL:${FREEPATH_WARNINGS_AS_ERRORS}>:-Werror>)
 if(FREEPATH_SANITIZE)
   target_compile_options(freepath_options INTERFACE -fsanitize=${FREEPATH_SANITIZE}
-                         -fno-omit-frame-pointer)
+                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(freepath_options INTERFACE -fsanitize=${FREEPATH_SANITIZE})
 endif()
