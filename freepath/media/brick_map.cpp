@@ -10,7 +10,7 @@
 namespace freepath {
 namespace {
 
-constexpr int64_t kMaxIndexEntries = int64_t{1} << 28;  // 1 GiB of index
+constexpr int64_t kMaxIndexEntries = int64_t{1} << 26;  // 256 MiB, some 3200³ voxels
 constexpr std::size_t kMaxBricks = (std::size_t{1} << 31) / BrickMap::kBrickVoxels;
 
 int brick_of(int voxel) { return voxel >> 3; }  // floor, for negative coordinates too
@@ -77,7 +77,7 @@ BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_ma
           active_max.z - active_min.z + 1);
     }
   }
-  map_.index_.assign(static_cast<std::size_t>(entries), 0);
+  map_.index_.resize(static_cast<std::size_t>(entries));
   map_.voxels_.reserve((brick_capacity + 1) * BrickMap::kBrickVoxels);
   new_brick();  // brick 0, the empty one
 }
@@ -96,13 +96,17 @@ uint32_t& BrickMapBuilder::entry(const Vec3i& brick) {
       .index_[(static_cast<std::size_t>(place.x) * counts.y + place.y) * counts.z + place.z];
 }
 
-uint32_t BrickMapBuilder::new_brick() {
-  const std::size_t brick = map_.brick_count();
-  if (brick >= kMaxBricks) {
+void BrickMapBuilder::check_brick_count(std::size_t count) const {
+  if (count > kMaxBricks) {
     fail("more than {} bricks of 8x8x8 voxels: the grid is too large, resample or split it",
          kMaxBricks);
   }
-  map_.voxels_.resize(map_.voxels_.size() + BrickMap::kBrickVoxels, 0.0F);
+}
+
+uint32_t BrickMapBuilder::new_brick() {
+  const std::size_t brick = map_.brick_count();
+  check_brick_count(brick + 1);
+  map_.voxels_.resize(map_.voxels_.size() + BrickMap::kBrickVoxels);
   shared_.push_back(brick == 0);
   return static_cast<uint32_t>(brick);
 }
@@ -114,7 +118,22 @@ std::span<float, BrickMap::kBrickVoxels> BrickMapBuilder::add_brick(const Vec3i&
       map_.voxels_.data() + std::size_t{place} * BrickMap::kBrickVoxels, BrickMap::kBrickVoxels);
 }
 
+std::span<float> BrickMapBuilder::add_bricks(std::span<const Vec3i> bricks) {
+  const std::size_t first = map_.brick_count();
+  check_brick_count(first + bricks.size());
+  map_.voxels_.resize(map_.voxels_.size() + bricks.size() * BrickMap::kBrickVoxels);
+  shared_.resize(first + bricks.size(), false);
+  for (std::size_t i = 0; i < bricks.size(); ++i) {
+    entry(bricks[i]) = static_cast<uint32_t>(first + i);
+  }
+  return std::span(map_.voxels_).subspan(first * BrickMap::kBrickVoxels);
+}
+
 void BrickMapBuilder::add_constant_brick(const Vec3i& brick, float value) {
+  add_constant_bricks(brick, brick + Vec3i(1), value);
+}
+
+void BrickMapBuilder::add_constant_bricks(const Vec3i& begin, const Vec3i& end, float value) {
   if (value == 0.0F) return;
   const auto [found, inserted] = constants_.try_emplace(std::bit_cast<uint32_t>(value), 0);
   if (inserted) {
@@ -123,7 +142,13 @@ void BrickMapBuilder::add_constant_brick(const Vec3i& brick, float value) {
     const auto first = map_.voxels_.end() - BrickMap::kBrickVoxels;
     std::fill(first, map_.voxels_.end(), value);
   }
-  entry(brick) = found->second;
+  const int run = end.z - begin.z;
+  for (int x = begin.x; x < end.x; ++x) {
+    for (int y = begin.y; y < end.y; ++y) {
+      entry(Vec3i(x, y, end.z - 1)) = found->second;  // checks that the run ends within the index
+      std::fill_n(&entry(Vec3i(x, y, begin.z)), run, found->second);
+    }
+  }
 }
 
 void BrickMapBuilder::set_voxel(const Vec3i& voxel, float value) {
@@ -137,6 +162,11 @@ void BrickMapBuilder::set_voxel(const Vec3i& voxel, float value) {
     entry(brick) = copy;
   }
   map_.voxels_[std::size_t{entry(brick)} * BrickMap::kBrickVoxels + voxel_offset(voxel)] = value;
+}
+
+void BrickMapBuilder::set_active_bounds(const Vec3i& active_min, const Vec3i& active_max) {
+  map_.active_min_ = active_min;
+  map_.active_max_ = active_max;
 }
 
 BrickMap BrickMapBuilder::finish() && { return std::move(map_); }

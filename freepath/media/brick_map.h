@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "freepath/base/vector.h"
+#include "freepath/media/page_allocator.h"
 
 namespace freepath {
 
@@ -15,8 +16,9 @@ namespace freepath {
 /// array. Brick 0 is the empty one (all zero). A brick of one constant value is stored once.
 ///
 /// The centre of voxel (i,j,k) is the point (i,j,k) of index space. The index covers the bounds of
-/// the active voxels grown by two on every side, so that a tap of the trilinear filter anywhere
-/// within one voxel of the bounds reads it without a check.
+/// the active voxels grown by two on every side (or more), so that a tap of the trilinear filter
+/// anywhere within one voxel of the bounds reads it without a check. Index and voxels stand in huge
+/// pages where the system has them; parts that were never written take no memory.
 class BrickMap {
  public:
   static constexpr int kBrickSize = 8;
@@ -50,8 +52,8 @@ class BrickMap {
  private:
   friend class BrickMapBuilder;
   Vec3i active_min_{0}, active_max_{-1}, origin_{0}, brick_counts_{0};
-  std::vector<uint32_t> index_;
-  std::vector<float> voxels_;
+  std::vector<uint32_t, PageAllocator<uint32_t>> index_;
+  std::vector<float, PageAllocator<float>> voxels_;
 };
 
 /// Fills a BrickMap brick by brick.
@@ -59,7 +61,8 @@ class BrickMap {
 /// @note Brick coordinates are voxel coordinates divided by 8 (floor), as OpenVDB's leaf origins.
 class BrickMapBuilder {
  public:
-  /// @param active_min,active_max inclusive bounds of the active voxels [index]
+  /// @param active_min,active_max inclusive bounds of the active voxels, or of the bricks that hold
+  ///   them [index]
   /// @param brick_capacity how many distinct bricks to reserve; more may be added
   /// @throws Error if the bounds need an index larger than kMaxIndexEntries, or more voxels than a
   ///   32-bit offset can address
@@ -68,16 +71,25 @@ class BrickMapBuilder {
   /// The 512 voxels of a new brick, zero at first, to be written (offset 64x + 8y + z). The span is
   /// valid until the next call.
   std::span<float, BrickMap::kBrickVoxels> add_brick(const Vec3i& brick);
+  /// New bricks at different places, for threads to fill: the 512 voxels of bricks[i] start at i·512
+  /// of the result, zero at first. The span is valid until the next call.
+  std::span<float> add_bricks(std::span<const Vec3i> bricks);
   /// Sets a whole brick to one value, stored once for each value.
   void add_constant_brick(const Vec3i& brick, float value);
+  /// Sets the bricks of the half-open box [begin, end) to one value.
+  void add_constant_bricks(const Vec3i& begin, const Vec3i& end, float value);
   /// Writes one voxel of a brick that may exist already.
   void set_voxel(const Vec3i& voxel, float value);
+
+  /// Narrows the bounds of the active voxels, where the constructor was given those of the bricks.
+  void set_active_bounds(const Vec3i& active_min, const Vec3i& active_max);
 
   BrickMap finish() &&;
 
  private:
   uint32_t& entry(const Vec3i& brick);
   uint32_t new_brick();
+  void check_brick_count(std::size_t count) const;
 
   BrickMap map_;
   std::unordered_map<uint32_t, uint32_t> constants_;  // bits of the value → brick
