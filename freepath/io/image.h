@@ -1,0 +1,90 @@
+#pragma once
+/// @file Images in files: read in any format OpenImageIO knows, written as EXR and PNG.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace freepath {
+
+/// A value of an image's metadata.
+using MetadataValue = std::variant<int64_t, double, std::string>;
+
+/// Pixels with named channels. Row 0 is the top; values are linear.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::string> channels;  ///< Names: R, G, B, A, variance.R, ...
+  std::vector<float> values;  ///< Interleaved: ((row · width) + column) · channels + channel
+  std::vector<std::pair<std::string, MetadataValue>> metadata;  ///< In the order of writing.
+
+  std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
+  /// The values of a pixel, one for each channel.
+  const float* pixel(int column, int row) const {
+    return values.data() + (static_cast<std::size_t>(row) * width + column) * channels.size();
+  }
+  float* pixel(int column, int row) {
+    return values.data() + (static_cast<std::size_t>(row) * width + column) * channels.size();
+  }
+};
+
+/// Number of the channel with this very name.
+std::optional<int> find_channel(const Image& image, std::string_view name);
+
+/// Numbers of the channels that make the colour: R, G and B by name, else the only colour channel
+/// (Y, or the only channel there is) three times.
+/// @param name what to call the image in a message
+/// @throws Error that lists the channels, if there is no colour among them
+std::array<int, 3> colour_channels(const Image& image, const std::string& name);
+
+/// Reads an image: the first part of the file, its data window. Formats that store sRGB values
+/// (PNG, JPEG) are made linear, their alpha left as it is.
+/// @throws Error that names the file, if it is missing, damaged or no image
+Image read_image(const std::string& path);
+
+/// The kinds of files that images are written to.
+enum class ImageFormat { kExr, kPng };
+
+/// The format that the extension stands for.
+/// @throws Error for an extension that cannot be written
+ImageFormat image_format(const std::string& path);
+
+/// Checks that an image could be written, before the time for rendering it is spent: the extension
+/// is known, the folder exists and can be written to, and what stands there already is a file that
+/// is not read-only.
+/// @throws Error that names the file and what to do
+void check_writable(const std::string& path);
+
+/// How values are stored in an EXR file.
+enum class ExrPrecision {
+  kFloat,
+  kHalf  ///< Values beyond ±65504 are stored as ±65504.
+};
+
+/// Writes all channels and the metadata to an EXR file (ZIP compression). Integers of the metadata
+/// that need more than 32 bits are stored as decimal text, since EXR has no wider type.
+///
+/// The file is written aside, in the same folder, and then renamed: a reader never sees half of it,
+/// and an old one survives a failure.
+/// @throws Error that names the file
+void write_exr(const std::string& path, const Image& image,
+               ExrPrecision precision = ExrPrecision::kFloat);
+
+/// Writes the colour to a PNG file: 8 bits, sRGB transfer function, clipped to [0, 1], in the same
+/// two steps as write_exr.
+/// @param exposure values are multiplied by 2^exposure first [stops]
+/// @throws Error that names the file
+void write_png(const std::string& path, const Image& image, double exposure = 0);
+
+/// The sRGB transfer function, linear → encoded, both in [0, 1] [IEC61966].
+float srgb_from_linear(float linear);
+/// Its inverse.
+float linear_from_srgb(float encoded);
+
+}  // namespace freepath

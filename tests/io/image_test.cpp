@@ -1,0 +1,202 @@
+#include "freepath/io/image.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test, removed at its end.
+class ImageTest : public ::testing::Test {
+ protected:
+  ImageTest() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(::testing::TempDir()) /
+              ("freepath_image_" + std::string(test->name()) + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  ~ImageTest() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return folder_ / name; }
+
+  std::size_t files_in_folder() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+
+  fs::path folder_;
+};
+
+/// 3×2 pixels whose values tell where they are: 100 · row + 10 · column + channel.
+Image numbered_image(std::vector<std::string> channels) {
+  Image image{
+      .width = 3, .height = 2, .channels = std::move(channels), .values = {}, .metadata = {}};
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      for (std::size_t channel = 0; channel < image.channels.size(); ++channel) {
+        image.values.push_back(static_cast<float>(100 * row + 10 * column + channel) + 0.1F);
+      }
+    }
+  }
+  return image;
+}
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_message(const std::function<void()>& action, const std::string& part) {
+  const std::string message = message_of(action);
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+TEST_F(ImageTest, ExrKeepsEveryChannelBitForBit) {
+  const Image written = numbered_image({"R", "G", "B", "A", "variance.R", "depth.Z", "lookups"});
+  write_exr(path("a.exr"), written);
+  const Image read = read_image(path("a.exr"));
+  ASSERT_EQ(read.width, 3);
+  ASSERT_EQ(read.height, 2);
+  ASSERT_EQ(read.channels.size(), written.channels.size());
+  for (std::size_t channel = 0; channel < written.channels.size(); ++channel) {
+    const auto found = find_channel(read, written.channels[channel]);
+    ASSERT_TRUE(found) << written.channels[channel];
+    for (int row = 0; row < 2; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        EXPECT_EQ(read.pixel(column, row)[*found], written.pixel(column, row)[channel]);
+      }
+    }
+  }
+}
+
+TEST_F(ImageTest, ExrKeepsMetadata) {
+  Image image = numbered_image({"R", "G", "B"});
+  image.metadata = {{"freepath:seed", int64_t{7}},
+                    {"freepath:paths", int64_t{10'000'000'000}},
+                    {"freepath:seconds", 0.1},
+                    {"freepath:tracker", std::string("delta")}};
+  write_exr(path("a.exr"), image);
+  const Image read = read_image(path("a.exr"));
+  const auto value = [&](const std::string& name) {
+    for (const auto& [key, value] : read.metadata) {
+      if (key == name) return value;
+    }
+    return MetadataValue("missing");
+  };
+  EXPECT_EQ(value("freepath:seed"), MetadataValue(int64_t{7}));
+  EXPECT_EQ(value("freepath:paths"), MetadataValue("10000000000"));
+  EXPECT_EQ(value("freepath:seconds"), MetadataValue(0.1));
+  EXPECT_EQ(value("freepath:tracker"), MetadataValue("delta"));
+}
+
+TEST_F(ImageTest, HalfPrecisionStaysFinite) {
+  Image image = numbered_image({"R", "G", "B"});
+  image.values[0] = 1e6F;
+  write_exr(path("a.exr"), image, ExrPrecision::kHalf);
+  const Image read = read_image(path("a.exr"));
+  EXPECT_EQ(read.values[0], 65504.0F);
+  EXPECT_NEAR(read.values[1], 1.1F, 1.1F / 2048);
+}
+
+TEST_F(ImageTest, PngAppliesExposureAndTheTransferFunction) {
+  Image image = numbered_image({"R", "G", "B"});
+  image.values.assign(image.values.size(), 0.125F);
+  image.values[0] = -1;
+  image.values[1] = 1e9F;
+  image.values[2] = NAN;
+  write_png(path("a.png"), image, 2);
+  const Image read = read_image(path("a.png"));
+  EXPECT_EQ(read.channels, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(read.values[0], 0);
+  EXPECT_EQ(read.values[1], 1);
+  EXPECT_EQ(read.values[2], 0);
+  // Read back linear; a step of 8 bits is 0.0068 there.
+  EXPECT_NEAR(read.values[3], 0.5F, 0.0034F);
+}
+
+TEST_F(ImageTest, TheTransferFunctionHasThePublishedValues) {
+  EXPECT_NEAR(srgb_from_linear(0.5F), 0.735357F, 1e-5);  // IEC 61966-2-1
+  EXPECT_NEAR(srgb_from_linear(1.0F), 1.0F, 1e-6);
+  for (float value = 0; value <= 1; value += 1.0F / 64) {
+    EXPECT_NEAR(linear_from_srgb(srgb_from_linear(value)), value, 1e-6);
+  }
+}
+
+TEST_F(ImageTest, AnOldFileIsReplacedAndNothingElseIsLeft) {
+  write_exr(path("a.exr"), numbered_image({"Y"}));
+  write_exr(path("a.exr"), numbered_image({"R", "G", "B"}));
+  EXPECT_EQ(read_image(path("a.exr")).channels.size(), 3);
+  EXPECT_EQ(files_in_folder(), 1);
+}
+
+TEST_F(ImageTest, WritingThroughALinkKeepsTheLink) {
+  write_exr(path("a.exr"), numbered_image({"Y"}));
+  fs::create_symlink("a.exr", path("link.exr"));
+  write_exr(path("link.exr"), numbered_image({"R", "G", "B"}));
+  EXPECT_TRUE(fs::is_symlink(path("link.exr")));
+  EXPECT_EQ(read_image(path("a.exr")).channels.size(), 3);
+}
+
+TEST_F(ImageTest, TargetsThatCannotBeWrittenAreNamedBeforeRendering) {
+  expect_message([&] { check_writable(path("no/a.exr")); }, "does not exist");
+  expect_message([&] { check_writable(path("a.gif")); }, "use .exr or .png");
+  expect_message([&] { check_writable(path("a")); }, "use .exr or .png");
+  fs::create_directory(path("folder.exr"));
+  expect_message([&] { check_writable(path("folder.exr")); }, "not a file");
+  write_exr(path("a.exr"), numbered_image({"Y"}));
+  fs::permissions(path("a.exr"), fs::perms::owner_read);
+  expect_message([&] { check_writable(path("a.exr")); }, "read-only");
+  expect_message([&] { write_exr(path("a.exr"), numbered_image({"Y"})); }, path("a.exr"));
+  EXPECT_EQ(message_of([&] { check_writable(path("new.PNG")); }), "no error");
+  EXPECT_EQ(message_of([&] { check_writable("here.exr"); }), "no error");
+}
+
+TEST_F(ImageTest, FilesThatCannotBeReadAreNamed) {
+  expect_message([&] { read_image(path("none.exr")); }, "none.exr: no such file");
+  expect_message([&] { read_image(folder_); }, "is a folder");
+  std::ofstream(path("text.exr")) << "not an image";
+  expect_message([&] { read_image(path("text.exr")); }, "text.exr: can't read");
+  std::ofstream(path("empty.hdr")).close();
+  expect_message([&] { read_image(path("empty.hdr")); }, "empty.hdr: can't read");
+}
+
+TEST_F(ImageTest, ATruncatedFileIsAnError) {
+  Image image{.width = 64, .height = 64, .channels = {"R", "G", "B"}, .values = {}, .metadata = {}};
+  for (int i = 0; i < 64 * 64 * 3; ++i) image.values.push_back(std::sin(static_cast<float>(i)));
+  write_exr(path("a.exr"), image);
+  fs::resize_file(path("a.exr"), fs::file_size(path("a.exr")) / 2);
+  expect_message([&] { read_image(path("a.exr")); }, "a.exr: can't read");
+}
+
+TEST_F(ImageTest, ColourIsFoundByNameAndNeverGuessed) {
+  EXPECT_EQ(colour_channels(numbered_image({"A", "B", "G", "R"}), "x"),
+            (std::array<int, 3>{3, 2, 1}));
+  EXPECT_EQ(colour_channels(numbered_image({"Y", "A"}), "x"), (std::array<int, 3>{0, 0, 0}));
+  expect_message(
+      [] {
+        colour_channels(numbered_image({"u", "v"}), "x.exr");
+      },
+      "x.exr: no channels R, G, B (or Y) among u, v");
+}
+
+TEST_F(ImageTest, AnInconsistentImageIsRefused) {
+  Image image = numbered_image({"R", "G", "B"});
+  image.values.pop_back();
+  expect_message([&] { write_exr(path("a.exr"), image); }, "do not agree");
+}
+
+}  // namespace
+}  // namespace freepath
