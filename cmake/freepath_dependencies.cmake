@@ -17,3 +17,13 @@ endif()
 if(FREEPATH_BUILD_BENCHMARKS)
   find_package(benchmark REQUIRED)
 endif()
+
+# Debian's OpenImageIO names the headers of optional libraries that need not be installed.
+get_target_property(openimageio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+foreach(folder ${openimageio_includes})
+  if(NOT EXISTS ${folder})
+    list(REMOVE_ITEM openimageio_includes ${folder})
+  endif()
+endforeach()
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES
+                      "${openimageio_includes}")

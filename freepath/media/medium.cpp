@@ -1,0 +1,144 @@
+#include "freepath/media/medium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+void check_spectrum(const Spectrum& spectrum, const char* name, std::size_t component) {
+  for (int channel = 0; channel < kChannels; ++channel) {
+    const float value = spectrum[channel];
+    if (!std::isfinite(value) || value < 0) {
+      fail("component {}: {} of channel {} is {}; it must be finite and not negative", component,
+           name, channel, value);
+    }
+  }
+}
+
+void check_component(const Component& component, const Component& first, std::size_t number) {
+  check_spectrum(component.sigma_a, "sigma_a", number);
+  check_spectrum(component.sigma_s, "sigma_s", number);
+  check_spectrum(component.emission, "emission", number);
+  if (!(std::abs(component.g) < 1)) {
+    fail("component {}: g is {}; the mean cosine must lie strictly between -1 and 1", number,
+         component.g);
+  }
+  if (!component.density || component.density->voxels.empty()) {
+    fail("component {}: its density has no active voxel", number);
+  }
+  const Field& field = *component.density;
+  if (field.index_to_world != first.density->index_to_world ||
+      field.voxels.origin() != first.density->voxels.origin() ||
+      field.voxels.brick_counts() != first.density->voxels.brick_counts()) {
+    fail("grids '{}' and '{}' differ in transform or bounds; components must share them",
+         field.name, first.density->name);
+  }
+}
+
+/// Longest world length of a voxel's edge, for the cost model alone.
+double voxel_edge(const Matrix4d& index_to_world) {
+  double edge = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* row = index_to_world[axis];
+    edge = std::max(edge, std::hypot(row[0], row[1], row[2]));
+  }
+  return edge;
+}
+
+}  // namespace
+
+Medium::Medium(std::vector<Component> components, int super_voxel,
+               std::optional<Matrix4d> world_to_index)
+    : components_(std::move(components)) {
+  if (components_.empty() || components_.size() > kMaxComponents) {
+    fail("a medium has 1 to {} components, not {}", kMaxComponents, components_.size());
+  }
+  std::vector<const BrickMap*> densities;
+  std::vector<float> extinction;
+  const Matrix4d& index_to_world = components_[0].density->index_to_world;
+  for (std::size_t k = 0; k < components_.size(); ++k) {
+    check_component(components_[k], components_[0], k);
+    densities.push_back(&components_[k].density->voxels);
+    extinction.push_back(
+        static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
+  }
+  super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
+
+  if (!world_to_index) {
+    const double determinant = index_to_world.determinant();
+    if (!std::isfinite(determinant) || determinant == 0) {
+      fail("grid '{}': its transform has no inverse", components_[0].density->name);
+    }
+    world_to_index = index_to_world.inverse();
+  }
+  const Vec3i& origin = densities[0]->origin();
+  const double scale = 1.0 / super_voxels_.cell_size;
+  for (int to = 0; to < 3; ++to) {
+    for (int from = 0; from < 3; ++from) {
+      world_to_walk_.linear[from][to] = static_cast<float>((*world_to_index)[from][to] * scale);
+    }
+    world_to_walk_.offset[to] =
+        static_cast<float>(((*world_to_index)[3][to] - origin[to] + 0.5) * scale);
+  }
+}
+
+Box3f Medium::walk_bounds(Interpolation interpolation) const {
+  const BrickMap& map = components_[0].density->voxels;
+  Vec3i low = map.active_min();
+  Vec3i high = map.active_max();
+  for (const Component& component : components_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], component.density->voxels.active_min()[axis]);
+      high[axis] = std::max(high[axis], component.density->voxels.active_max()[axis]);
+    }
+  }
+  const float reach = interpolation == Interpolation::kNearest ? 0.5F : 1.0F;
+  const float scale = 1.0F / static_cast<float>(super_voxels_.cell_size);
+  Box3f box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto origin = static_cast<float>(map.origin()[axis]);
+    box.min[axis] = (static_cast<float>(low[axis]) - reach - origin + 0.5F) * scale;
+    box.max[axis] = (static_cast<float>(high[axis]) + reach - origin + 0.5F) * scale;
+  }
+  return box;
+}
+
+Box3d Medium::world_bounds() const {
+  Box3d box;
+  for (const Component& component : components_) {
+    const BrickMap& map = component.density->voxels;
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3d point;
+      for (int axis = 0; axis < 3; ++axis) {
+        point[axis] = (corner >> axis & 1) != 0 ? map.active_max()[axis] + 0.5
+                                                : map.active_min()[axis] - 0.5;
+      }
+      box.extendBy(point * component.density->index_to_world);
+    }
+  }
+  return box;
+}
+
+bool Medium::has_grey_extinction() const {
+  return std::all_of(components_.begin(), components_.end(),
+                     [](const Component& c) { return freepath::is_grey(c.sigma_t()); });
+}
+
+bool Medium::is_grey() const {
+  return std::all_of(components_.begin(), components_.end(), [](const Component& c) {
+    return freepath::is_grey(c.sigma_a) && freepath::is_grey(c.sigma_s) &&
+           freepath::is_grey(c.emission);
+  });
+}
+
+bool Medium::emits() const {
+  return std::any_of(components_.begin(), components_.end(), [](const Component& c) {
+    return largest(c.sigma_a) > 0 && largest(c.emission) > 0;
+  });
+}
+
+}  // namespace freepath

@@ -1,0 +1,80 @@
+#pragma once
+/// @file A medium: the sum of its components, cut into super-voxels.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "freepath/base/spectrum.h"
+#include "freepath/base/vector.h"
+#include "freepath/media/field.h"
+#include "freepath/media/super_voxels.h"
+
+namespace freepath {
+
+/// How a density is read between the centres of voxels.
+enum class Interpolation {
+  kNearest,     ///< The voxel that holds the point.
+  kTrilinear,   ///< Eight voxels, weighted.
+  kStochastic,  ///< One voxel, drawn with its trilinear weight [Pharr24].
+};
+
+/// One density field times the spectra of its cross sections.
+struct Component {
+  std::shared_ptr<const Field> density;
+  Spectrum sigma_a{0.0F};   ///< Absorption per unit of density [1/m].
+  Spectrum sigma_s{1.0F};   ///< Scattering per unit of density [1/m].
+  float g = 0;              ///< Mean cosine of the Henyey-Greenstein phase function, |g| < 1.
+  Spectrum emission{0.0F};  ///< L_e, emitted radiance; the source term is sigma_a · density · L_e.
+
+  Spectrum sigma_t() const { return sigma_a + sigma_s; }
+};
+
+/// An affine map of rows, point · linear + offset, in single precision.
+struct AffineMap {
+  std::array<std::array<float, 3>, 3> linear{};  ///< linear[from][to]
+  std::array<float, 3> offset{};
+};
+
+/// A sum of components in one index space, with bounds over super-voxels. Immutable once made, so
+/// threads share it freely.
+class Medium {
+ public:
+  static constexpr int kMaxComponents = 8;
+
+  /// @param components at least one; their densities must share index space and brick layout
+  /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
+  /// @param world_to_index replaces the inverse of the fields' transform where that has none (a
+  ///   plane-parallel slab collapses x and y)
+  /// @throws Error for coefficients that are negative or not finite, |g| >= 1, too many components,
+  ///   fields that differ in transform or bounds, an empty field
+  explicit Medium(std::vector<Component> components, int super_voxel = 0,
+                  std::optional<Matrix4d> world_to_index = {});
+
+  const std::vector<Component>& components() const { return components_; }
+  const SuperVoxels& super_voxels() const { return super_voxels_; }
+
+  /// World space → walk space, whose unit is the edge of a super-voxel and whose cells are those of
+  /// the super-voxels.
+  const AffineMap& world_to_walk() const { return world_to_walk_; }
+
+  /// Where the density may differ from 0 [walk space], which depends on the filter's reach.
+  Box3f walk_bounds(Interpolation interpolation) const;
+  /// Bounds of the active voxels [world].
+  Box3d world_bounds() const;
+
+  /// Whether every component's extinction is the same in all channels, so that one path can carry
+  /// them all.
+  bool has_grey_extinction() const;
+  /// Whether all coefficients are the same in all channels.
+  bool is_grey() const;
+  bool emits() const;
+
+ private:
+  std::vector<Component> components_;
+  SuperVoxels super_voxels_;
+  AffineMap world_to_walk_;
+};
+
+}  // namespace freepath

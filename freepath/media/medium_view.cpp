@@ -1,0 +1,38 @@
+#include "freepath/media/medium_view.h"
+
+namespace freepath {
+
+MediumView view_of(const Medium& medium, Interpolation interpolation, int channel) {
+  MediumView view;
+  const SuperVoxels& cells = medium.super_voxels();
+  const BrickMap& map = medium.components()[0].density->voxels;
+  const Box3f bounds = medium.walk_bounds(interpolation);
+  for (int axis = 0; axis < 3; ++axis) {
+    view.cell_counts[axis] = cells.counts[axis];
+    view.brick_counts[axis] = map.brick_counts()[axis];
+    view.bounds_min[axis] = bounds.min[axis];
+    view.bounds_max[axis] = bounds.max[axis];
+  }
+  view.cell_size = cells.cell_size;
+  view.minima = cells.minima.data();
+  view.maxima = cells.maxima.data();
+  view.empty_radius = cells.empty_radius.data();
+  view.world_to_walk = medium.world_to_walk();
+  view.interpolation = interpolation;
+  view.component_count = static_cast<int>(medium.components().size());
+  for (int k = 0; k < view.component_count; ++k) {
+    const Component& component = medium.components()[k];
+    ComponentView& target = view.components[k];
+    target.index = component.density->voxels.index().data();
+    target.voxels = component.density->voxels.voxels().data();
+    for (int slot = 0; slot < kChannels; ++slot) {
+      const int from = channel < 0 ? slot : channel;
+      target.sigma_a[slot] = component.sigma_a[from];
+      target.sigma_s[slot] = component.sigma_s[from];
+      target.emission[slot] = component.sigma_a[from] * component.emission[from];
+    }
+  }
+  return view;
+}
+
+}  // namespace freepath

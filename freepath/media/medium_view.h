@@ -1,0 +1,39 @@
+#pragma once
+/// @file A medium as the lanes read it: plain pointers and numbers.
+
+#include <array>
+#include <cstdint>
+
+#include "freepath/media/medium.h"
+
+namespace freepath {
+
+/// Cross sections of one component in the channels that a walk carries [1/m per density].
+struct ComponentView {
+  const uint32_t* index = nullptr;   ///< Brick of each index entry.
+  const float* voxels = nullptr;     ///< Voxels of the bricks.
+  std::array<float, kChannels> sigma_a{};
+  std::array<float, kChannels> sigma_s{};
+  std::array<float, kChannels> emission{};  ///< sigma_a · L_e
+};
+
+/// A borrowed view of a Medium, valid while that lives.
+struct MediumView {
+  std::array<int32_t, 3> cell_counts{};
+  int32_t cell_size = 1;
+  const float* minima = nullptr;
+  const float* maxima = nullptr;
+  const int32_t* empty_radius = nullptr;
+  std::array<int32_t, 3> brick_counts{};
+  std::array<float, 3> bounds_min{};  ///< Where the walk takes place [walk space].
+  std::array<float, 3> bounds_max{};
+  AffineMap world_to_walk;
+  Interpolation interpolation = Interpolation::kTrilinear;
+  int component_count = 0;
+  std::array<ComponentView, Medium::kMaxComponents> components{};
+};
+
+/// @param channel the one channel to carry, or -1 for all of them
+MediumView view_of(const Medium& medium, Interpolation interpolation, int channel);
+
+}  // namespace freepath

@@ -1,0 +1,56 @@
+#pragma once
+/// @file Super-voxels [SzirmayKalos11]: bounds of the densities over coarse cells.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "freepath/base/vector.h"
+#include "freepath/media/brick_map.h"
+
+namespace freepath {
+
+/// Minimum and maximum of each component's density over a grid of cubic cells, *as the interpolant
+/// sees it*: the voxels of a cell dilated by one, which is the reach of the trilinear filter. They
+/// bound nearest, trilinear and stochastic interpolation alike, and a position that rounding moves
+/// just over a cell's face still reads voxels that the cell has counted.
+///
+/// Cell (x,y,z) covers the voxels [cell_size·x, cell_size·(x+1)) counted from the first voxel of the
+/// brick map's index. Entries are stored x slowest: cell = (x · ny + y) · nz + z.
+struct SuperVoxels {
+  int cell_size = 8;           ///< Edge of a cell [voxels].
+  Vec3i counts{0};             ///< Cells along each axis.
+  int components = 1;          ///< Densities per cell.
+  std::vector<float> minima;   ///< [cell · components + component]
+  std::vector<float> maxima;   ///< [cell · components + component]
+  /// Chebyshev radius of the empty cube around a cell [cells]: with radius r every cell nearer than
+  /// r along all axes is empty (0: the cell itself is not). A walk leaves the whole cube in a step.
+  std::vector<int32_t> empty_radius;
+
+  std::size_t cell_count() const { return empty_radius.size(); }
+  std::size_t memory_bytes() const;
+};
+
+/// Edge lengths that build_super_voxels chooses from [voxels].
+inline constexpr int kSuperVoxelSizes[] = {4, 8, 16, 32, 64};
+
+/// What the choice of the cell size weighs against each other.
+struct SuperVoxelCost {
+  double step = 1.0;    ///< Cost of a step into the next cell [relative].
+  double lookup = 2.5;  ///< Cost of a tentative collision and its look-up [relative].
+};
+
+/// Builds the super-voxels of densities that share one brick layout.
+///
+/// @param densities the components' brick maps: same origin and brick counts
+/// @param extinction the largest extinction per unit of density of each component, per voxel edge
+///   [1/voxel]; only the choice of the size depends on it
+/// @param cell_size one of kSuperVoxelSizes, or 0 to take the one with the least expected cost of
+///   a unit of length: steps cost 1.5/cell_size, look-ups the mean majorant of the cells that are
+///   not empty
+/// @throws Error for another cell_size
+SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
+                               std::span<const float> extinction, int cell_size,
+                               const SuperVoxelCost& cost = {});
+
+}  // namespace freepath

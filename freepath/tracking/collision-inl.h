@@ -1,0 +1,98 @@
+// The algebra of one tentative collision, shared by all null-collision trackers: choose an event
+// with probability P_e, multiply the weight by mu_e/(rate P_e) [Kutz17, Eq. 9; Galtier13].
+
+#if defined(FREEPATH_TRACKING_COLLISION_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FREEPATH_TRACKING_COLLISION_INL_H_
+#undef FREEPATH_TRACKING_COLLISION_INL_H_
+#else
+#define FREEPATH_TRACKING_COLLISION_INL_H_
+#endif
+
+#include "freepath/base/lanes-inl.h"
+#include "freepath/tracking/walk_modes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace freepath::HWY_NAMESPACE {
+
+/// A tentative collision in each lane of `lanes`. A tracker sets the events and changes the weight
+/// and the emission tally of those lanes; what it leaves in the others is ignored.
+template <int N>
+struct Collision {
+  MaskF lanes;
+  VecF rate;        ///< Density of tentative collisions here [1/m].
+  VecF uniform;     ///< [0,1), for the choice of the event.
+  VecF weight[N];
+  VecF emitted[N];  ///< Tally of emitted radiance so far.
+  MaskF scatter;    ///< Set by the tracker; neither: null.
+  MaskF absorb;
+  VecF scatter_uniform;  ///< [0,1) given a scattering, to choose its component.
+};
+
+/// Mean over channels.
+template <int N>
+HWY_INLINE VecF channel_mean(const VecF (&values)[N]) {
+  VecF sum = values[0];
+  for (int channel = 1; channel < N; ++channel) sum = hn::Add(sum, values[channel]);
+  if constexpr (N > 1) sum = hn::Mul(sum, set(1.0F / N));
+  return sum;
+}
+
+/// a/b, and 0 where b is 0 (only reached by lanes for which the event is impossible).
+HWY_INLINE VecF divide_or_zero(VecF a, VecF b) {
+  const MaskF possible = hn::Ne(b, hn::Zero(kFloat));
+  return hn::IfThenElseZero(possible, hn::Div(a, hn::IfThenElse(possible, b, set(1.0F))));
+}
+
+/// The events at which analog emission is counted: absorptions, or every real collision where
+/// absorption is weighted.
+template <int N>
+HWY_INLINE MaskF emission_event(const WalkModes& modes, const Collision<N>& c, MaskF collided) {
+  return modes.absorption == Absorption::kWeighted ? collided : c.absorb;
+}
+
+/// Chooses absorption, scattering or null with probabilities in proportion to `absorb`, `scatter`
+/// and `null` (each ≥ 0) and weights the event. Under weighted absorption the absorbed part scatters
+/// too and the weight takes the albedo. Emission is tallied at every tentative collision, or at the
+/// real ones alone.
+///
+/// @param probability unnormalised probabilities of absorption, scattering, null
+/// @param sigma_n null coefficient of each channel [1/m]
+template <int N, class Coefficients>
+HWY_INLINE void choose_event(const WalkModes& modes, const Coefficients& sigma,
+                             const VecF (&sigma_n)[N], VecF (&probability)[3], Collision<N>& c) {
+  if (modes.absorption == Absorption::kWeighted) {
+    probability[1] = hn::Add(probability[0], probability[1]);
+    probability[0] = hn::Zero(kFloat);
+  }
+  const VecF real = hn::Add(probability[0], probability[1]);
+  const VecF total = hn::Add(real, probability[2]);
+  const VecF chosen = hn::Mul(c.uniform, total);
+  c.absorb = hn::Lt(chosen, probability[0]);
+  c.scatter = hn::AndNot(c.absorb, hn::Lt(chosen, real));
+  c.scatter_uniform = divide_or_zero(hn::Sub(chosen, probability[0]), probability[1]);
+
+  const VecF event_probability = hn::IfThenElse(
+      c.absorb, probability[0], hn::IfThenElse(c.scatter, probability[1], probability[2]));
+  // 1/(rate P_e), and without P_e for the tally that needs no event
+  const VecF per_rate = hn::Div(set(1.0F), c.rate);
+  const VecF scale = hn::Mul(divide_or_zero(total, event_probability), per_rate);
+  const MaskF collided = hn::Or(c.absorb, c.scatter);
+  for (int channel = 0; channel < N; ++channel) {
+    if (modes.emits) {
+      const VecF share = modes.emission == EmissionTally::kCollision
+                             ? per_rate
+                             : hn::IfThenElseZero(emission_event(modes, c, collided), scale);
+      c.emitted[channel] = hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share,
+                                      c.emitted[channel]);
+    }
+    const VecF coefficient = hn::IfThenElse(
+        c.absorb, sigma.sigma_a[channel],
+        hn::IfThenElse(c.scatter, sigma.sigma_s[channel], sigma_n[channel]));
+    c.weight[channel] = hn::Mul(c.weight[channel], hn::Mul(coefficient, scale));
+  }
+}
+
+}  // namespace freepath::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // FREEPATH_TRACKING_COLLISION_INL_H_

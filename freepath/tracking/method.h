@@ -1,0 +1,47 @@
+#pragma once
+/// @file What a tracker or transmittance estimator says of itself, and how a user names it.
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace freepath {
+
+/// One numeric option of a method.
+struct MethodOption {
+  std::string_view name;
+  float standard = 0;  ///< Value when nothing is said.
+  float minimum = 0;
+  float maximum = 0;
+  std::string_view meaning;
+};
+
+/// What users may know of a method. All trackers and estimators carry one, and every list, help
+/// text and parser is made from these.
+struct MethodInfo {
+  std::string_view name;      ///< The same in C++, on the command line and in scenes.
+  std::string_view summary;
+  std::string_view needs;     ///< What the medium must be like; empty: anything.
+  std::string_view unbiased;  ///< When it is unbiased.
+  std::string_view source;    ///< Citation key and equation.
+  std::span<const MethodOption> options;
+};
+
+inline constexpr int kMaxMethodOptions = 4;
+
+/// A method with the values of its options, in the order of MethodInfo::options.
+struct Method {
+  std::string name;
+  std::array<float, kMaxMethodOptions> options{};
+};
+
+/// Reads "name" or "name:option=value,option=value".
+/// @throws Error for an unknown name or option, listing those there are, and for a value that is no
+///   number or out of range
+Method parse_method(std::string_view text, std::span<const MethodInfo> known);
+
+/// The spelling that parse_method reads, with the options that differ from their standard.
+std::string to_string(const Method& method, std::span<const MethodInfo> known);
+
+}  // namespace freepath

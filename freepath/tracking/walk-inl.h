@@ -1,0 +1,307 @@
+// The walk: the one loop of every null-collision tracker and transmittance estimator. A stream of
+// rays in, a stream of events out. Several groups of lanes are in flight at once; a lane whose ray
+// has ended takes the next ray of the stream.
+//
+// The loop is written over three concepts, and knows neither media nor files:
+//   Segments   the pieces of a ray over which the bounds are constant: load, store, segment, leave,
+//              position (media/segments-inl.h)
+//   Medium     bounds of a segment, and the coefficients at a point in three stages: aim, fetch,
+//              coefficients (media/field_sum-inl.h)
+//   Tracker    rate(bounds): density of tentative collisions [1/m], bound or not;
+//              collide(modes, coefficients, collision): the event, and the new weight
+//
+// Unspent optical depth is carried from segment to segment [SzirmayKalos11], so that a flight draws
+// one exponential per tentative collision and not one per super-voxel.
+
+#if defined(FREEPATH_TRACKING_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FREEPATH_TRACKING_WALK_INL_H_
+#undef FREEPATH_TRACKING_WALK_INL_H_
+#else
+#define FREEPATH_TRACKING_WALK_INL_H_
+#endif
+
+#include <bit>
+
+#include "freepath/base/lanes-inl.h"
+#include "freepath/tracking/collision-inl.h"
+#include "freepath/tracking/random-inl.h"
+#include "freepath/tracking/statistics.h"
+#include "freepath/tracking/streams.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace freepath::HWY_NAMESPACE {
+
+/// Groups in flight: enough to hide a miss of the last cache behind the arithmetic of the others
+/// (bench/README.md has the figures).
+inline constexpr int kGroups = 4;
+
+/// Steps through super-voxels that a group takes before lanes that have their tentative collision
+/// go on without those that still look for theirs.
+inline constexpr int kStepsPerRound = 8;
+
+template <int N, class Tracker, class Segments, class Medium>
+class Walk {
+ public:
+  Walk(const Tracker& tracker, const Segments& segments, const Medium& medium,
+       const WalkModes& modes, uint64_t seed, const RayStream& rays, const WalkScratch& entry,
+       FlightStream& flights, WalkStatistics& statistics)
+      : tracker_(tracker),
+        segments_(segments),
+        medium_(medium),
+        modes_(modes),
+        seed_(seed),
+        rays_(rays),
+        entry_(entry),
+        flights_(flights),
+        statistics_(statistics),
+        largest_weight_(hn::Zero(kFloat)) {}
+
+  void run() {
+    HWY_ALIGN_MAX Group groups[kGroups] = {};
+    statistics_.rays += rays_.size();
+    for (Group& group : groups) refill(group, (1U << kLanes) - 1);
+    bool alive = true;
+    while (alive) {
+      alive = false;
+      for (Group& group : groups) {
+        if (group.alive == 0) continue;
+        alive = true;
+        find_collision(group);
+      }
+      for (Group& group : groups) {
+        if (group.colliding != 0) medium_.fetch(group.lookup);
+      }
+      for (Group& group : groups) {
+        if (group.colliding != 0) collide(group);
+        retire(group);
+      }
+    }
+    statistics_.largest_weight =
+        std::max(statistics_.largest_weight, hn::GetLane(hn::MaxOfLanes(kFloat, largest_weight_)));
+  }
+
+ private:
+  /// Lanes in flight together, one ray a lane.
+  struct Group {
+    typename Segments::State segments;
+    typename Medium::State lookup;
+    HWY_ALIGN_MAX float tau[kLanes];    ///< Optical depth still to go to the tentative collision.
+    HWY_ALIGN_MAX float rate[kLanes];   ///< Where it happened [1/m].
+    HWY_ALIGN_MAX float weight[N][kLanes];
+    HWY_ALIGN_MAX float emitted[N][kLanes];
+    HWY_ALIGN_MAX uint32_t words[3][kLanes];  ///< Random words for the collision to come.
+    HWY_ALIGN_MAX uint32_t pixel[kLanes];
+    HWY_ALIGN_MAX uint32_t sample[kLanes];
+    HWY_ALIGN_MAX uint32_t stream[kLanes];
+    HWY_ALIGN_MAX uint32_t block[kLanes];     ///< Philox blocks drawn, one per tentative collision.
+    HWY_ALIGN_MAX int32_t component[kLanes];
+    HWY_ALIGN_MAX uint32_t ray[kLanes];       ///< Slot in the streams.
+    uint32_t alive;      ///< Lanes that hold a ray.
+    uint32_t drawing;    ///< Lanes that need a new optical depth.
+    uint32_t colliding;  ///< Lanes at a tentative collision.
+    uint32_t escaped;
+    uint32_t scattered;
+    uint32_t absorbed;
+  };
+
+  /// Draws optical depths and steps through the segments to where they are spent.
+  HWY_INLINE void find_collision(Group& group) {
+    auto cursor = segments_.load(group.segments);
+    const MaskF drawing = mask_of(group.drawing);
+    const MaskF alive = mask_of(group.alive);
+    VecF tau = hn::Load(kFloat, group.tau);
+    VecU words[3];
+    draw(group, drawing, tau, words);
+
+    VecF rate = hn::Zero(kFloat);
+    MaskF searching = alive;
+    MaskF hit = no_lanes();
+    MaskF escaped = no_lanes();
+    for (int step = 0; step < kStepsPerRound && !hn::AllFalse(kFloat, searching); ++step) {
+      statistics_.super_voxel_steps += hn::CountTrue(kFloat, searching);
+      const auto segment = segments_.segment(cursor, searching);
+      const VecF rate_here = tracker_.rate(medium_.bounds(segment.index));
+      const VecF depth = hn::Mul(rate_here, hn::Sub(segment.exit, cursor.t));
+      const MaskF hits = hn::And(searching, hn::Lt(tau, depth));
+      const VecF place = hn::Min(hn::Add(cursor.t, hn::Div(tau, rate_here)), segment.exit);
+      const MaskF leaves = hn::AndNot(hits, searching);
+      assign(rate, hits, rate_here);
+      assign(tau, leaves, hn::Sub(tau, depth));
+      assign(cursor.t, searching, hn::IfThenElse(hits, place, segment.exit));
+      hit = hn::Or(hit, hits);
+      const MaskF inside =
+          segments_.leave(cursor, segment, hn::And(leaves, hn::Lt(segment.exit, cursor.end)));
+      escaped = hn::Or(escaped, hn::AndNot(inside, leaves));
+      searching = inside;
+    }
+
+    VecF point[3];
+    segments_.position(cursor, point);
+    medium_.aim(point, hit, words[1], words[2], group.lookup);
+    segments_.store(cursor, group.segments);
+    hn::Store(tau, kFloat, group.tau);
+    hn::Store(rate, kFloat, group.rate);
+    group.colliding = bits_of(hit);
+    group.escaped = bits_of(escaped);
+    group.drawing = group.scattered = group.absorbed = 0;
+  }
+
+  /// One block of random words for each lane that begins a new flight between collisions.
+  HWY_INLINE void draw(Group& group, MaskF drawing, VecF& tau, VecU (&words)[3]) {
+    const VecU block = hn::Load(kUint, group.block);
+    const RandomWords random =
+        philox_lanes(block, hn::Load(kUint, group.stream), hn::Load(kUint, group.sample),
+                     hn::Load(kUint, group.pixel), seed_);
+    const MaskU fresh = uint_mask(drawing);
+    assign(tau, drawing, exponential_lanes(random.words[0]));
+    for (int i = 0; i < 3; ++i) {
+      words[i] = hn::IfThenElse(fresh, random.words[i + 1], hn::Load(kUint, group.words[i]));
+      hn::Store(words[i], kUint, group.words[i]);
+    }
+    hn::Store(hn::Add(block, hn::IfThenElseZero(fresh, hn::Set(kUint, 1))), kUint, group.block);
+  }
+
+  /// Reads the coefficients, lets the tracker decide, and counts.
+  HWY_INLINE void collide(Group& group) {
+    Collision<N> c;
+    c.lanes = mask_of(group.colliding);
+    c.rate = hn::IfThenElse(c.lanes, hn::Load(kFloat, group.rate), set(1.0F));
+    c.uniform = uniform_lanes(hn::Load(kUint, group.words[0]));
+    VecF weight[N];
+    VecF emitted[N];
+    for (int channel = 0; channel < N; ++channel) {
+      c.weight[channel] = weight[channel] = hn::Load(kFloat, group.weight[channel]);
+      c.emitted[channel] = emitted[channel] = hn::Load(kFloat, group.emitted[channel]);
+    }
+    c.scatter = c.absorb = no_lanes();
+    c.scatter_uniform = hn::Zero(kFloat);
+    const auto sigma = medium_.coefficients(group.lookup);
+    tracker_.template collide<N>(modes_, sigma, c);
+
+    c.scatter = hn::And(c.scatter, c.lanes);
+    c.absorb = hn::And(c.absorb, c.lanes);
+    const VecI component = medium_.choose_component(group.lookup, sigma, c.scatter_uniform,
+                                                    c.scatter, c.weight);
+    hn::Store(component, kInt, group.component);
+    for (int channel = 0; channel < N; ++channel) {
+      assign(weight[channel], c.lanes, c.weight[channel]);
+      assign(emitted[channel], c.lanes, c.emitted[channel]);
+      hn::Store(weight[channel], kFloat, group.weight[channel]);
+      if (modes_.emits) hn::Store(emitted[channel], kFloat, group.emitted[channel]);
+    }
+    group.scattered = bits_of(c.scatter);
+    group.absorbed = bits_of(c.absorb);
+    group.drawing = group.colliding & ~(group.scattered | group.absorbed);
+    count(group, sigma, c, weight);
+  }
+
+  template <class Coefficients>
+  HWY_INLINE void count(const Group& group, const Coefficients& sigma, const Collision<N>& c,
+                        const VecF (&weight)[N]) {
+    const auto collisions = static_cast<uint64_t>(std::popcount(group.colliding));
+    const auto real =
+        static_cast<uint64_t>(std::popcount(group.scattered | group.absorbed));
+    statistics_.tentative_collisions += collisions;
+    statistics_.real_collisions += real;
+    statistics_.null_collisions += collisions - real;
+    statistics_.lookups += collisions * static_cast<uint64_t>(medium_.component_count());
+    MaskF negative = no_lanes();
+    for (int channel = 0; channel < N; ++channel) {
+      const VecF now = hn::IfThenElseZero(c.lanes, weight[channel]);
+      largest_weight_ = hn::Max(largest_weight_, hn::Abs(now));
+      negative = hn::Or(negative, hn::Lt(now, hn::Zero(kFloat)));
+    }
+    statistics_.negative_weights += hn::CountTrue(kFloat, negative);
+    if constexpr (Tracker::kNeedsBound) {
+      // Rounding of an interpolated maximum is no violation.
+      const VecF sigma_t = hn::Add(sigma.sigma_a[0], sigma.sigma_s[0]);
+      const MaskF above = hn::Gt(sigma_t, hn::Mul(c.rate, set(1.00001F)));
+      statistics_.bound_violations += hn::CountTrue(kFloat, hn::And(above, c.lanes));
+    }
+  }
+
+  /// Writes out the rays that have ended and refills their lanes.
+  HWY_INLINE void retire(Group& group) {
+    const uint32_t done = group.escaped | group.scattered | group.absorbed;
+    if (done == 0) return;
+    for (uint32_t rest = done; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      const uint32_t bit = 1U << lane;
+      const uint32_t ray = group.ray[lane];
+      flights_.t[ray] = group.segments.t[lane] + entry_.begin[ray];
+      flights_.event[ray] = (group.scattered & bit) != 0  ? Event::kScatter
+                            : (group.absorbed & bit) != 0 ? Event::kAbsorb
+                                                          : Event::kEscape;
+      flights_.component[ray] = static_cast<uint8_t>(group.component[lane]);
+      for (int channel = 0; channel < N; ++channel) {
+        flights_.weight[channel][ray] = group.weight[channel][lane];
+        flights_.emitted[channel][ray] = group.emitted[channel][lane];
+      }
+      // Every block but one that found no collision belongs to a tentative collision.
+      const uint32_t unspent = (group.escaped & bit) != 0 ? 1 : 0;
+      flights_.lookups[ray] =
+          (group.block[lane] - unspent) * static_cast<uint32_t>(medium_.component_count());
+    }
+    group.escaped = group.scattered = group.absorbed = group.colliding = 0;
+    group.alive &= ~done;
+    group.drawing &= ~done;
+    refill(group, done);
+  }
+
+  /// Gives each of the lanes the next ray that meets the medium; the others have escaped already.
+  HWY_INLINE void refill(Group& group, uint32_t lanes) {
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+      while (next_ray_ < rays_.size() && !(entry_.length[next_ray_] > 0)) miss(next_ray_++);
+      if (next_ray_ == rays_.size()) return;
+      const int lane = std::countr_zero(rest);
+      const std::size_t ray = next_ray_++;
+      for (int axis = 0; axis < 3; ++axis) {
+        group.segments.origin[axis][lane] = entry_.origin[axis][ray];
+        group.segments.direction[axis][lane] = entry_.direction[axis][ray];
+        group.segments.inverse[axis][lane] = entry_.inverse[axis][ray];
+        group.segments.cell[axis][lane] = entry_.cell[axis][ray];
+      }
+      group.segments.t[lane] = 0;
+      group.segments.end[lane] = entry_.length[ray];
+      for (int channel = 0; channel < N; ++channel) {
+        group.weight[channel][lane] = 1;
+        group.emitted[channel][lane] = 0;
+      }
+      group.pixel[lane] = rays_.pixel[ray];
+      group.sample[lane] = rays_.sample[ray];
+      group.stream[lane] = rays_.stream[ray];
+      group.block[lane] = 0;
+      group.ray[lane] = static_cast<uint32_t>(ray);
+      group.alive |= 1U << lane;
+      group.drawing |= 1U << lane;
+    }
+  }
+
+  HWY_INLINE void miss(std::size_t ray) {
+    flights_.t[ray] = rays_.t_max[ray];
+    flights_.event[ray] = Event::kEscape;
+    flights_.component[ray] = 0;
+    for (int channel = 0; channel < N; ++channel) {
+      flights_.weight[channel][ray] = 1;
+      flights_.emitted[channel][ray] = 0;
+    }
+    flights_.lookups[ray] = 0;
+  }
+
+  const Tracker& tracker_;
+  const Segments& segments_;
+  const Medium& medium_;
+  const WalkModes& modes_;
+  uint64_t seed_;
+  const RayStream& rays_;
+  const WalkScratch& entry_;
+  FlightStream& flights_;
+  WalkStatistics& statistics_;
+  VecF largest_weight_;
+  std::size_t next_ray_ = 0;
+};
+
+}  // namespace freepath::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // FREEPATH_TRACKING_WALK_INL_H_

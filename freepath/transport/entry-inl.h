@@ -1,0 +1,93 @@
+// Where rays enter a medium: from the world to walk space, clipped to the medium's bounds.
+
+#if defined(FREEPATH_TRANSPORT_ENTRY_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FREEPATH_TRANSPORT_ENTRY_INL_H_
+#undef FREEPATH_TRANSPORT_ENTRY_INL_H_
+#else
+#define FREEPATH_TRANSPORT_ENTRY_INL_H_
+#endif
+
+#include "freepath/base/lanes-inl.h"
+#include "freepath/media/medium_view.h"
+#include "freepath/tracking/streams.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace freepath::HWY_NAMESPACE {
+
+/// Lengths and inverse directions stay below this, so that no product of theirs is infinite.
+inline constexpr float kHuge = 1e30F;
+
+HWY_INLINE VecF entry_inverse(VecF direction) {
+  const MaskF small = hn::Lt(hn::Abs(direction), set(1.0F / kHuge));
+  return hn::Div(set(1.0F), hn::IfThenElse(small, set(1.0F / kHuge), direction));
+}
+
+/// Enters kLanes rays from slot `first` on. The origin moves to where a ray meets the bounds, so that
+/// a distant camera costs no precision inside. A ray that misses, or whose numbers are not finite,
+/// gets length 0.
+HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std::size_t first,
+                           WalkScratch& scratch) {
+  VecF world_origin[3];
+  VecF world_direction[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    world_origin[axis] = hn::LoadU(kFloat, rays.origin[axis].data() + first);
+    world_direction[axis] = hn::LoadU(kFloat, rays.direction[axis].data() + first);
+  }
+  const AffineMap& map = medium.world_to_walk;
+  VecF origin[3];
+  VecF direction[3];
+  VecF inverse[3];
+  VecF begin = hn::Zero(kFloat);
+  VecF end = hn::Min(hn::LoadU(kFloat, rays.t_max.data() + first), set(kHuge));
+  for (int axis = 0; axis < 3; ++axis) {
+    origin[axis] = set(map.offset[axis]);
+    direction[axis] = hn::Zero(kFloat);
+    for (int from = 0; from < 3; ++from) {
+      const VecF factor = set(map.linear[from][axis]);
+      origin[axis] = hn::MulAdd(world_origin[from], factor, origin[axis]);
+      direction[axis] = hn::MulAdd(world_direction[from], factor, direction[axis]);
+    }
+    inverse[axis] = entry_inverse(direction[axis]);
+    const VecF to_low =
+        hn::Mul(hn::Sub(set(medium.bounds_min[axis]), origin[axis]), inverse[axis]);
+    const VecF to_high =
+        hn::Mul(hn::Sub(set(medium.bounds_max[axis]), origin[axis]), inverse[axis]);
+    begin = hn::Max(begin, hn::Min(to_low, to_high));
+    end = hn::Min(end, hn::Max(to_low, to_high));
+  }
+  // A comparison with NaN is false, so rays that are not finite miss.
+  const MaskF meets = hn::And(hn::Lt(begin, end), hn::Lt(end, set(2 * kHuge)));
+  const VecF length = hn::IfThenElseZero(meets, hn::Sub(end, begin));
+  hn::StoreU(begin, kFloat, scratch.begin.data() + first);
+  hn::StoreU(length, kFloat, scratch.length.data() + first);
+  for (int axis = 0; axis < 3; ++axis) {
+    const VecF entry = hn::MulAdd(begin, direction[axis], origin[axis]);
+    const VecF last = set(static_cast<float>(medium.cell_counts[axis] - 1));
+    const VecF cell = hn::Min(hn::Max(hn::Floor(entry), hn::Zero(kFloat)), last);
+    const VecF safe_cell = hn::IfThenElseZero(meets, cell);
+    hn::StoreU(entry, kFloat, scratch.origin[axis].data() + first);
+    hn::StoreU(direction[axis], kFloat, scratch.direction[axis].data() + first);
+    hn::StoreU(inverse[axis], kFloat, scratch.inverse[axis].data() + first);
+    hn::StoreU(hn::ConvertTo(kInt, safe_cell), kInt, scratch.cell[axis].data() + first);
+  }
+}
+
+inline void enter_stream(const MediumView& medium, const RayStream& rays, WalkScratch& scratch) {
+  const std::size_t padded = rays.size() + kStreamPadding;
+  if (scratch.begin.size() < padded) {
+    for (auto* group : {&scratch.origin, &scratch.direction, &scratch.inverse}) {
+      for (auto& values : *group) values.resize(padded);
+    }
+    for (auto& values : scratch.cell) values.resize(padded);
+    scratch.begin.resize(padded);
+    scratch.length.resize(padded);
+  }
+  for (std::size_t first = 0; first < rays.size(); first += kLanes) {
+    enter_rays(medium, rays, first, scratch);
+  }
+}
+
+}  // namespace freepath::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // FREEPATH_TRANSPORT_ENTRY_INL_H_

@@ -1,0 +1,46 @@
+#pragma once
+/// @file The compiled walks: one function for each method, channel count and SIMD target.
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "freepath/media/medium_view.h"
+#include "freepath/tracking/method.h"
+#include "freepath/tracking/streams.h"
+#include "freepath/tracking/walk_modes.h"
+
+namespace freepath {
+
+/// The instructions a walk is compiled for. AVX2 and AVX-512 give the same bits.
+enum class Simd { kBest, kOneLane, kSse4, kAvx2, kAvx512 };
+
+/// @throws Error for an unknown name
+Simd parse_simd(std::string_view name);
+/// Those that this machine can run, best first, one lane last.
+std::vector<Simd> available_simd();
+std::string_view to_string(Simd simd);
+
+/// Walks a stream of rays through a medium by one method.
+using WalkFunction = void (*)(const MediumView& medium, std::span<const float> options,
+                              const WalkModes& modes, uint64_t seed, const RayStream& rays,
+                              FlightStream& flights, WalkScratch& scratch,
+                              WalkStatistics& statistics);
+
+/// One method as compiled for one target.
+struct Kernel {
+  MethodInfo info;
+  WalkFunction one_channel = nullptr;
+  WalkFunction all_channels = nullptr;
+};
+
+/// All methods of one target, in the order of the registry.
+struct KernelTable {
+  std::vector<Kernel> trackers;
+  std::vector<Kernel> transmittance;
+};
+
+/// @throws Error if this machine can't run the target
+const KernelTable& kernels(Simd simd);
+
+}  // namespace freepath

@@ -1,0 +1,70 @@
+#include "freepath/transport/walker.h"
+
+#include <vector>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+std::vector<MethodInfo> infos_of(const std::vector<Kernel>& kernels) {
+  std::vector<MethodInfo> infos;
+  for (const Kernel& kernel : kernels) infos.push_back(kernel.info);
+  return infos;
+}
+
+const Kernel& find(const std::vector<Kernel>& kernels, const std::string& name) {
+  for (const Kernel& kernel : kernels) {
+    if (kernel.info.name == name) return kernel;
+  }
+  fail("there is no kernel '{}'", name);
+}
+
+}  // namespace
+
+std::span<const MethodInfo> tracker_infos() {
+  static const std::vector<MethodInfo> kInfos = infos_of(kernels(Simd::kOneLane).trackers);
+  return kInfos;
+}
+
+std::span<const MethodInfo> transmittance_infos() {
+  static const std::vector<MethodInfo> kInfos = infos_of(kernels(Simd::kOneLane).transmittance);
+  return kInfos;
+}
+
+Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
+    : view_(view_of(medium, settings.interpolation, channel)),
+      seed_(settings.seed),
+      channels_(channel == kAllChannels && !medium.is_grey() ? kChannels : 1) {
+  if (channel == kAllChannels && !medium.has_grey_extinction()) {
+    fail("the extinction differs between channels: trace each channel by itself");
+  }
+  const KernelTable& table = kernels(settings.simd);
+  tracker_.method = parse_method(settings.tracker, tracker_infos());
+  transmittance_.method = parse_method(settings.transmittance, transmittance_infos());
+  const Kernel& tracker = find(table.trackers, tracker_.method.name);
+  const Kernel& transmittance = find(table.transmittance, transmittance_.method.name);
+  const bool one = channels_ == 1;
+  tracker_.function = one ? tracker.one_channel : tracker.all_channels;
+  // One extinction for all channels makes one transmittance.
+  transmittance_.function = transmittance.one_channel;
+  modes_ = {settings.absorption, settings.emission, medium.emits()};
+}
+
+void Walker::walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,
+                  FlightStream& flights, WalkScratch& scratch, WalkStatistics& statistics) const {
+  flights.resize(rays.size());
+  bound.function(view_, bound.method.options, modes, seed_, rays, flights, scratch, statistics);
+}
+
+void Walker::free_paths(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+                        WalkStatistics& statistics) const {
+  walk(tracker_, modes_, rays, flights, scratch, statistics);
+}
+
+void Walker::transmittance(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+                           WalkStatistics& statistics) const {
+  walk(transmittance_, WalkModes{}, rays, flights, scratch, statistics);
+}
+
+}  // namespace freepath

@@ -1,0 +1,68 @@
+#pragma once
+/// @file The facade of the walk: what programs, Python and embedders call.
+
+#include <span>
+#include <string>
+
+#include "freepath/media/medium.h"
+#include "freepath/transport/kernels.h"
+
+namespace freepath {
+
+/// Which methods to walk with, and how.
+struct WalkSettings {
+  std::string tracker = "delta";          ///< "name:option=value"; see tracker_infos().
+  std::string transmittance = "ratio";    ///< The same; see transmittance_infos().
+  Interpolation interpolation = Interpolation::kStochastic;
+  Absorption absorption = Absorption::kWeighted;
+  EmissionTally emission = EmissionTally::kCollision;
+  Simd simd = Simd::kBest;
+  uint64_t seed = 0;
+};
+
+std::span<const MethodInfo> tracker_infos();
+std::span<const MethodInfo> transmittance_infos();
+
+/// Samples free paths and estimates transmittances in one medium. Const and without state of its
+/// own: any number of threads may share it, each with its own streams and scratch.
+class Walker {
+ public:
+  /// Carries all channels in one walk.
+  static constexpr int kAllChannels = -1;
+
+  /// @param medium must outlive the walker
+  /// @param channel the one channel to carry, or kAllChannels, which needs an extinction that is the
+  ///   same in all (Medium::has_grey_extinction)
+  /// @throws Error for methods, options or instructions that do not exist, and for kAllChannels in a
+  ///   medium with chromatic extinction
+  Walker(const Medium& medium, const WalkSettings& settings, int channel = kAllChannels);
+
+  /// Flies every ray to its next scattering, absorption or escape [Kutz17]. Flights are written to
+  /// the slots of their rays; a ray's flight depends on the ray and the seed alone.
+  void free_paths(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+                  WalkStatistics& statistics) const;
+
+  /// Estimates the transmittance from each ray's origin to its t_max: the weight of its flight.
+  void transmittance(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+                     WalkStatistics& statistics) const;
+
+  /// Channels in the weights of a flight: 1 or kChannels.
+  int channels() const { return channels_; }
+
+ private:
+  struct Bound {
+    WalkFunction function = nullptr;
+    Method method;
+  };
+  void walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,
+            FlightStream& flights, WalkScratch& scratch, WalkStatistics& statistics) const;
+
+  MediumView view_;
+  Bound tracker_;
+  Bound transmittance_;
+  WalkModes modes_;
+  uint64_t seed_;
+  int channels_;
+};
+
+}  // namespace freepath
