@@ -96,13 +96,13 @@ TEST(RandomStream, UniformNumbersFillEveryBinAlike) {
 
 TEST(RandomStream, FirstNumbersOfManyPathsFillPairsOfBinsAlike) {
   // The first two numbers of each of 2^20 paths: what decides the picture is how paths differ.
-  constexpr int kSide = 32;
+  constexpr std::size_t kSide = 32;
   std::vector<uint64_t> counts(kSide * kSide);
   for (uint32_t pixel = 0; pixel < 1024; ++pixel) {
     for (uint32_t sample = 0; sample < 1024; ++sample) {
       RandomStream stream(0, pixel, sample, 0);
-      const auto first = static_cast<std::size_t>(stream.uniform() * kSide);
-      ++counts[first * kSide + static_cast<std::size_t>(stream.uniform() * kSide)];
+      const auto first = static_cast<std::size_t>(stream.uniform() * float{kSide});
+      ++counts[first * kSide + static_cast<std::size_t>(stream.uniform() * float{kSide})];
     }
   }
   const std::vector<double> expected(kSide * kSide, 1024.0);
