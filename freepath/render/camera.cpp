@@ -1,0 +1,94 @@
+#include "freepath/render/camera.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+
+namespace {
+
+bool is_finite(const Vec3d& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Tangent of half the angle of view.
+double half_extent(double fov) {
+  if (!(fov > 0 && fov < 180)) {
+    fail("the angle of view is {} degrees; it must lie between 0 and 180", fov);
+  }
+  return std::tan(0.5 * fov * std::numbers::pi / 180);
+}
+
+/// Right, up and backwards of a camera.
+struct CameraAxes {
+  Vec3d right, up, back;
+};
+
+CameraAxes camera_axes(const Vec3d& forward, const Vec3d& up) {
+  const Vec3d right = forward.cross(up).normalized();
+  return {right, right.cross(forward), -forward};
+}
+
+}  // namespace
+
+Camera::Camera(const View& view, int width, int height)
+    : origin_(view.from), width_(width), height_(height) {
+  if (width < 1 || height < 1) {
+    fail("the film has {}x{} pixels; it needs at least 1x1", width, height);
+  }
+  if (!is_finite(view.from) || !is_finite(view.at) || !is_finite(view.up)) {
+    fail("the camera's position, target and up vector must be finite numbers");
+  }
+  const Vec3d sight = view.at - view.from;
+  // Below this the line of sight would be made of rounding errors.
+  constexpr double kSmallest = 1e-12;
+  if (sight.length() <= kSmallest * std::max(view.from.length(), view.at.length())) {
+    fail("the camera stands at ({}, {}, {}) and looks at the same point; move one of them",
+         view.from.x, view.from.y, view.from.z);
+  }
+  const Vec3d forward = sight.normalized();
+  constexpr double kSmallestSine = 1e-6;
+  if (forward.cross(view.up).length() <= kSmallestSine * view.up.length()) {
+    fail("the camera looks along its up vector ({}, {}, {}); choose another up axis or target",
+         view.up.x, view.up.y, view.up.z);
+  }
+  const double extent_y = half_extent(view.fov);
+  const double extent_x = extent_y * width / height;
+  const CameraAxes axes = camera_axes(forward, view.up);
+  corner_ = Vec3f(forward - axes.right * extent_x + axes.up * extent_y);
+  step_x_ = Vec3f(axes.right * (2 * extent_x / width));
+  step_y_ = Vec3f(axes.up * (-2 * extent_y / height));
+}
+
+View frame_box(const Box3d& bounds, UpAxis up, double fov, double aspect) {
+  if (bounds.isEmpty() || !is_finite(bounds.min) || !is_finite(bounds.max) ||
+      !(bounds.size().length() > 0)) {
+    fail("can't place the camera: the volume has no finite extent; give a view with --look-at");
+  }
+  if (!(aspect > 0) || !std::isfinite(aspect)) {
+    fail("can't place the camera: the film's aspect ratio is {}", aspect);
+  }
+  constexpr double kMargin = 0.05;  // of the picture, on each side
+  const double extent_y = half_extent(fov) * (1 - 2 * kMargin);
+  const double extent_x = extent_y * aspect;
+  const Vec3d back(sky_direction(kFramingElevation, kFramingAzimuth, up));
+  const Vec3d up_world(up_vector(up));
+  const CameraAxes axes = camera_axes(-back, up_world);
+  const Vec3d centre = bounds.center();
+  // Each corner demands a distance of its own; the farthest shows all of them.
+  double distance = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d offset =
+        Vec3d(corner & 1 ? bounds.max.x : bounds.min.x, corner & 2 ? bounds.max.y : bounds.min.y,
+              corner & 4 ? bounds.max.z : bounds.min.z) -
+        centre;
+    const double across = std::abs(offset.dot(axes.right)) / extent_x;
+    const double along = std::abs(offset.dot(axes.up)) / extent_y;
+    distance = std::max(distance, offset.dot(axes.back) + std::max(across, along));
+  }
+  return {centre + axes.back * distance, centre, up_world, fov};
+}
+
+}  // namespace freepath

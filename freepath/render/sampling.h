@@ -1,0 +1,58 @@
+#pragma once
+/// @file Drawing directions and table entries from uniform numbers in [0, 1).
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "freepath/base/vector.h"
+
+namespace freepath {
+
+/// Density of a uniform direction on the sphere [1/sr].
+inline constexpr float kUniformSpherePdf = 0.25F * std::numbers::inv_pi_v<float>;
+
+/// A uniformly distributed unit vector.
+inline Vec3f sample_sphere(float u0, float u1) {
+  const float sine = 2.0F * std::sqrt(u0 * (1.0F - u0));
+  const float azimuth = 2.0F * std::numbers::pi_v<float> * u1;
+  return {sine * std::cos(azimuth), 1.0F - 2.0F * u0, sine * std::sin(azimuth)};
+}
+
+/// One column of an alias table (the method of Walker, 1977, built as by Vose, 1991): itself with
+/// probability `threshold`, else `alias`.
+struct AliasEntry {
+  float threshold;
+  uint32_t alias;
+};
+
+/// The alias table of a discrete distribution.
+/// @param weights not negative, finite, their sum positive
+std::vector<AliasEntry> make_alias_table(std::span<const double> weights);
+
+/// An entry drawn from an alias table, and what is left of the uniform number.
+struct AliasChoice {
+  uint32_t index;
+  float remainder;  ///< Uniform in [0, 1).
+};
+
+/// Draws an entry in constant time.
+inline AliasChoice choose(std::span<const AliasEntry> table, float u) {
+  constexpr float kBelowOne = 1.0F - 0x1p-24F;
+  const float scaled = u * static_cast<float>(table.size());
+  const uint32_t column =
+      std::min(static_cast<uint32_t>(scaled), static_cast<uint32_t>(table.size() - 1));
+  const float fraction = std::min(scaled - static_cast<float>(column), kBelowOne);
+  const AliasEntry entry = table[column];
+  if (fraction < entry.threshold) {
+    return {column, std::min(fraction / entry.threshold, kBelowOne)};
+  }
+  return {entry.alias,
+          std::min((fraction - entry.threshold) / (1.0F - entry.threshold), kBelowOne)};
+}
+
+}  // namespace freepath
