@@ -20,9 +20,9 @@ using MetadataValue = std::variant<int64_t, double, std::string>;
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::string> channels;  ///< Names: R, G, B, A, variance.R, ...
-  std::vector<float> values;  ///< Interleaved: ((row · width) + column) · channels + channel
-  std::vector<std::pair<std::string, MetadataValue>> metadata;  ///< In the order of writing.
+  std::vector<std::string> channels = {};  ///< Names: R, G, B, A, variance.R, ...
+  std::vector<float> values = {};  ///< Interleaved: ((row · width) + column) · channels + channel
+  std::vector<std::pair<std::string, MetadataValue>> metadata = {};  ///< In the order of writing.
 
   std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
   /// The values of a pixel, one for each channel.

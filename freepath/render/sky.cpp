@@ -100,11 +100,7 @@ ImageEnvironment make_sky(const SunParameters& sun, UpAxis up) {
     const Vec3f towards = lat_long_direction(u, static_cast<float>(height), UpAxis::kY);
     return sky.radiance(height, towards.dot(to_sun));
   };
-  Image image{.width = kWidth,
-              .height = kHeight,
-              .channels = {"R", "G", "B"},
-              .values = {},
-              .metadata = {}};
+  Image image{.width = kWidth, .height = kHeight, .channels = {"R", "G", "B"}};
   image.values.resize(image.pixel_count() * 3);
   const auto set = [&](int column, int row, const Spectrum& s) {
     std::copy_n(&s[0], 3, image.pixel(column, row));

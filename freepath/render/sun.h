@@ -23,7 +23,7 @@ struct SunParameters {
   double azimuth = 0;     ///< As on a compass, see sky_direction [degrees].
   double turbidity = 3;   ///< Haze: 2 is very clear, 3 clear, 6 hazy, 10 almost fog.
   /// On a surface that faces the sun; by default what direct_sun_irradiance gives.
-  std::optional<Spectrum> irradiance;
+  std::optional<Spectrum> irradiance = {};
 };
 
 /// Irradiance of direct sunlight on a surface that faces the sun, in the units above.

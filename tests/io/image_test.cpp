@@ -38,8 +38,7 @@ class ImageTest : public ::testing::Test {
 
 /// 3×2 pixels whose values tell where they are: 100 · row + 10 · column + channel.
 Image numbered_image(std::vector<std::string> channels) {
-  Image image{
-      .width = 3, .height = 2, .channels = std::move(channels), .values = {}, .metadata = {}};
+  Image image{.width = 3, .height = 2, .channels = std::move(channels)};
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 3; ++column) {
       for (std::size_t channel = 0; channel < image.channels.size(); ++channel) {
@@ -174,7 +173,7 @@ TEST_F(ImageTest, FilesThatCannotBeReadAreNamed) {
 }
 
 TEST_F(ImageTest, ATruncatedFileIsAnError) {
-  Image image{.width = 64, .height = 64, .channels = {"R", "G", "B"}, .values = {}, .metadata = {}};
+  Image image{.width = 64, .height = 64, .channels = {"R", "G", "B"}};
   for (int i = 0; i < 64 * 64 * 3; ++i) image.values.push_back(std::sin(static_cast<float>(i)));
   write_exr(path("a.exr"), image);
   fs::resize_file(path("a.exr"), fs::file_size(path("a.exr")) / 2);

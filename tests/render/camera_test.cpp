@@ -1,0 +1,113 @@
+#include "freepath/render/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+void expect_near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6F) {
+  EXPECT_LE((a - b).length(), tolerance) << a << " is not " << b;
+}
+
+/// Where a point of the world appears on the film, in pixels, and how deep.
+Vec3d project(const View& view, int width, int height, const Vec3d& point) {
+  const Vec3d forward = (view.at - view.from).normalized();
+  const Vec3d right = forward.cross(view.up).normalized();
+  const Vec3d up = right.cross(forward);
+  const Vec3d offset = point - view.from;
+  const double depth = offset.dot(forward);
+  const double extent = std::tan(0.5 * view.fov * kRadians);
+  return {width * 0.5 + offset.dot(right) / depth / extent * height * 0.5,
+          height * 0.5 - offset.dot(up) / depth / extent * height * 0.5, depth};
+}
+
+TEST(Camera, LooksAtItsTargetInTheMiddleOfTheFilm) {
+  const View view{.from = {1, 2, 3}, .at = {-4, 0, 9}};
+  const Camera camera(view, 640, 480);
+  const CameraRay ray = camera.ray(320, 240);
+  EXPECT_EQ(ray.origin, view.from);
+  expect_near(ray.direction, Vec3f((view.at - view.from).normalized()));
+}
+
+TEST(Camera, HasXToTheRightYDownAndAVerticalAngleOfView) {
+  // Looking along -z with y up, +x is to the right.
+  const Camera camera({.from = {0, 0, 0}, .at = {0, 0, -1}, .fov = 60}, 200, 100);
+  const auto extent = static_cast<float>(std::tan(30 * kRadians));
+  expect_near(camera.ray(100, 0).direction, Vec3f(0, extent, -1).normalized());
+  expect_near(camera.ray(100, 100).direction, Vec3f(0, -extent, -1).normalized());
+  expect_near(camera.ray(200, 50).direction, Vec3f(2 * extent, 0, -1).normalized());
+  expect_near(camera.ray(0, 0).direction, Vec3f(-2 * extent, extent, -1).normalized());
+}
+
+TEST(Camera, RefusesDegenerateViews) {
+  const Vec3d o(0);
+  EXPECT_THROW(Camera({.from = {1, 2, 3}, .at = {1, 2, 3}}, 10, 10), Error);
+  EXPECT_THROW(Camera({.from = o, .at = {0, 5, 0}, .up = {0, -1, 0}}, 10, 10), Error);
+  EXPECT_THROW(Camera({.from = o, .at = {0, 0, 5}, .up = o}, 10, 10), Error);
+  EXPECT_THROW(Camera({.from = o, .at = {0, 0, 5}, .fov = 0}, 10, 10), Error);
+  EXPECT_THROW(Camera({.from = o, .at = {0, 0, 5}, .fov = 180}, 10, 10), Error);
+  EXPECT_THROW(Camera({.from = o, .at = {0, 0, 5}}, 0, 10), Error);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Camera({.from = o, .at = {0, nan, 5}}, 10, 10), Error);
+}
+
+TEST(FrameBox, ShowsTheWholeBoxWithASmallMargin) {
+  const Box3d boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
+                         {{100, 200, 300}, {104, 201, 302}},
+                         {{0, 0, 0}, {0.1, 30, 0.1}},
+                         {{-5e5, 1e6, 0}, {5e5, 1e6, 2e6}}};
+  for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
+    for (const Box3d& box : boxes) {
+      for (const auto& [width, height] : {std::pair{640, 360}, std::pair{100, 300}}) {
+        const View view = frame_box(box, up, 35, static_cast<double>(width) / height);
+        double nearest_edge = 1;
+        for (int i = 0; i < 8; ++i) {
+          const Vec3d corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                             i & 4 ? box.max.z : box.min.z);
+          const Vec3d film = project(view, width, height, corner);
+          EXPECT_GT(film.z, 0);
+          nearest_edge = std::min({nearest_edge, film.x / width, 1 - film.x / width,
+                                   film.y / height, 1 - film.y / height});
+        }
+        EXPECT_NEAR(nearest_edge, 0.05, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(FrameBox, IsTheSameViewForATurnedWorld) {
+  const View y_up = frame_box({{-1, -2, -3}, {1, 2, 3}}, UpAxis::kY, 40, 1.5);
+  const View z_up = frame_box({{-1, -3, -2}, {1, 3, 2}}, UpAxis::kZ, 40, 1.5);
+  expect_near(to_y_up(Vec3f(z_up.from), UpAxis::kZ), Vec3f(y_up.from), 1e-5F);
+  EXPECT_EQ(z_up.up, Vec3d(0, 0, 1));
+  EXPECT_LT(y_up.from.y, 0);  // a little below the middle
+  EXPECT_GT(y_up.from.z, 0);  // in the south
+}
+
+TEST(FrameBox, RefusesBoxesWithoutExtent) {
+  EXPECT_THROW(frame_box(Box3d(), UpAxis::kY, 40, 1), Error);
+  EXPECT_THROW(frame_box({{1, 1, 1}, {1, 1, 1}}, UpAxis::kY, 40, 1), Error);
+  EXPECT_THROW(frame_box({{0, 0, 0}, {1, 1, 1}}, UpAxis::kY, 200, 1), Error);
+  EXPECT_THROW(frame_box({{0, 0, 0}, {1, 1, 1}}, UpAxis::kY, 40, 0), Error);
+}
+
+TEST(SkyDirection, IsACompass) {
+  expect_near(sky_direction(0, 0, UpAxis::kY), {0, 0, -1});
+  expect_near(sky_direction(0, 90, UpAxis::kY), {1, 0, 0});
+  expect_near(sky_direction(90, 0, UpAxis::kY), {0, 1, 0});
+  expect_near(sky_direction(0, 0, UpAxis::kZ), {0, 1, 0});
+  expect_near(sky_direction(0, 90, UpAxis::kZ), {1, 0, 0});
+  expect_near(sky_direction(90, 0, UpAxis::kZ), {0, 0, 1});
+}
+
+}  // namespace
+}  // namespace freepath

@@ -1,0 +1,88 @@
+#include "freepath/render/film.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "freepath/base/error.h"
+#include "freepath/base/random.h"
+#include "tests/statistics.h"
+
+namespace freepath {
+namespace {
+
+float value(const Image& image, int column, const std::string& channel) {
+  return image.pixel(column, 0)[find_channel(image, channel).value()];
+}
+
+TEST(Film, AveragesWhatThePathsFound) {
+  Film film(2, 1);
+  film.add(1, {.radiance = {1, 2, 3},
+               .alpha = 1,
+               .albedo = {0.5F, 0.25F, 1},
+               .depth = 10,
+               .depth_weight = 1,
+               .lookups = 7});
+  film.add(1, {.radiance = {3, 2, 0}, .lookups = 2});
+  const Image image = film.to_image();
+  EXPECT_EQ(value(image, 1, "R"), 2);
+  EXPECT_EQ(value(image, 1, "G"), 2);
+  EXPECT_EQ(value(image, 1, "B"), 1.5F);
+  EXPECT_EQ(value(image, 1, "A"), 0.5F);
+  EXPECT_EQ(value(image, 1, "albedo.G"), 0.125F);
+  EXPECT_EQ(value(image, 1, "depth.Z"), 10);  // of the path that scattered
+  EXPECT_EQ(value(image, 1, "lookups"), 4.5F);
+  EXPECT_EQ(value(image, 1, "variance.R"), 1);      // (5 - 4) / (2 - 1)
+  EXPECT_EQ(value(image, 1, "variance.G"), 0);      // equal samples
+  EXPECT_EQ(value(image, 1, "variance.B"), 2.25F);  // (4.5 - 2.25) / (2 - 1)
+  EXPECT_EQ(film.samples(1), 2);
+}
+
+TEST(Film, VarianceIsThatOfTheMean) {
+  Film film(1, 1);
+  RandomStream random(1, 0, 0, 0);
+  testing::RunningStatistics statistics;
+  for (int i = 0; i < 10'000; ++i) {
+    const float x = 1000.0F + random.uniform();
+    statistics.add(x);
+    film.add(0, {.radiance = {x, x, x}});
+  }
+  const double expected = statistics.standard_error() * statistics.standard_error();
+  EXPECT_NEAR(value(film.to_image(), 0, "variance.R"), expected, 1e-4 * expected);
+}
+
+TEST(Film, ASingleSampleStandsInForItsVariance) {
+  Film film(1, 1);
+  film.add(0, {.radiance = {3, 0, 1}});
+  EXPECT_EQ(value(film.to_image(), 0, "variance.R"), 9);
+}
+
+TEST(Film, CountsSamplesThatAreNotFiniteAndStaysFinite) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Film film(4, 1);
+  EXPECT_EQ(film.non_finite_samples().samples, 0);
+  film.add(2, {.radiance = {1, kNan, 1}});
+  film.add(3, {.depth = kInfinity});
+  film.add(3, {.radiance = {1, 1, 1}});
+  // Two values whose squares and sum no float can hold.
+  for (int i = 0; i < 2; ++i) film.add(0, {.radiance = {3e38F, 0, 0}});
+  EXPECT_EQ(film.non_finite_samples().samples, 2);
+  EXPECT_EQ(film.non_finite_samples().first_pixel, 2);
+  EXPECT_EQ(film.samples(2), 0);
+  EXPECT_EQ(film.samples(3), 1);
+  const Image image = film.to_image();
+  EXPECT_TRUE(std::all_of(image.values.begin(), image.values.end(),
+                          [](float x) { return std::isfinite(x); }));
+}
+
+TEST(Film, RefusesToBeEmpty) {
+  EXPECT_THROW(Film(0, 10), Error);
+  EXPECT_THROW(Film(10, -1), Error);
+}
+
+}  // namespace
+}  // namespace freepath

@@ -1,0 +1,355 @@
+// Environment, sky and sun, alone and as the mixture that the integrator samples.
+
+#include "freepath/render/lights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/base/random.h"
+#include "freepath/render/sky.h"
+#include "tests/statistics.h"
+
+namespace freepath {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+void expect_near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6F) {
+  EXPECT_LE((a - b).length(), tolerance) << a << " is not " << b;
+}
+
+Image grey_image(int width, int height, const std::function<float(int, int)>& value) {
+  Image image{.width = width, .height = height, .channels = {"Y"}};
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) image.values.push_back(value(column, row));
+  }
+  return image;
+}
+
+/// A rough image with black parts and one bright pixel.
+Image rough_image() {
+  RandomStream random(2, 7, 1, 8);
+  Image image = grey_image(16, 9, [&](int column, int row) {
+    const float value = random.uniform();
+    return column < 5 && row > 2 ? 0.0F : value * value;
+  });
+  image.values[3 * 16 + 11] = 40;
+  return image;
+}
+
+/// Integral over all directions, by the midpoint rule in azimuth and height. The rows of an image
+/// are split evenly if `rows` is a multiple of theirs.
+double integrate(const std::function<double(const Vec3f&)>& f, int columns, int rows) {
+  double sum = 0;
+  for (int row = 0; row < rows; ++row) {
+    const double top = std::cos(kPi * row / rows);
+    const double bottom = std::cos(kPi * (row + 1) / rows);
+    const double solid_angle = 2 * kPi * (top - bottom) / columns;
+    for (int column = 0; column < columns; ++column) {
+      const Vec3f d = lat_long_direction((column + 0.5F) / static_cast<float>(columns),
+                                         static_cast<float>(0.5 * (top + bottom)), UpAxis::kY);
+      sum += f(d) * solid_angle;
+    }
+  }
+  return sum;
+}
+
+/// Samples fall where the density says: bins of latitude and longitude, against its integral. The
+/// sun's disc, smaller than any bin, has a bin of its own.
+void expect_samples_follow_pdf(const std::string& name, const Lights& lights) {
+  constexpr int kColumns = 24;
+  constexpr int kRows = 12;
+  constexpr int kFine = 24;  // points for a bin and axis
+  constexpr int kSamples = 500'000;
+  const auto bin = [](const Vec3f& d) {
+    const LatLong position = lat_long(d, UpAxis::kY);
+    return std::clamp(static_cast<int>(position.v * kRows), 0, kRows - 1) * kColumns +
+           std::clamp(static_cast<int>(position.u * kColumns), 0, kColumns - 1);
+  };
+  const auto in_sun = [&](const Vec3f& d) { return lights.sun() && lights.sun()->contains(d); };
+  std::vector<double> expected(kRows * kColumns + 1, 0.0);
+  std::vector<uint64_t> counts(expected.size(), 0);
+  // Quadrature points that happen to lie in the disc are left to its bin.
+  integrate(
+      [&](const Vec3f& d) {
+        const double fine_rows = kRows * kFine;
+        const double row =
+            std::min(fine_rows - 1, std::floor(lat_long(d, UpAxis::kY).v * fine_rows));
+        const double solid_angle =
+            2 * kPi / (kColumns * kFine) *
+            (std::cos(kPi * row / fine_rows) - std::cos(kPi * (row + 1) / fine_rows));
+        if (!in_sun(d)) expected[bin(d)] += kSamples * lights.pdf(d) * solid_angle;
+        return 0.0;
+      },
+      kColumns * kFine, kRows * kFine);
+  if (lights.sun()) {
+    expected.back() = kSamples * lights.pdf(lights.sun()->direction()) * Sun::solid_angle();
+  }
+  RandomStream random(11, 12, 13, 14);
+  for (int i = 0; i < kSamples; ++i) {
+    const float u0 = random.uniform();
+    const float u1 = random.uniform();
+    const LightSample sample = lights.sample(u0, u1, random.uniform());
+    ASSERT_NEAR(sample.direction.length(), 1, 1e-6);
+    ++counts[in_sun(sample.direction) ? counts.size() - 1 : bin(sample.direction)];
+  }
+  const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
+  EXPECT_NEAR(total, kSamples, 1e-3 * kSamples) << name << ": the density does not integrate to 1";
+  for (double& value : expected) value *= kSamples / total;
+  EXPECT_TRUE(testing::check_chi_square(name, testing::chi_square_test(counts, expected)));
+}
+
+/// E[f · radiance / pdf] is the integral of f · radiance.
+void expect_estimates_integral(const std::string& name, const Lights& lights) {
+  // A lobe that no light is symmetric to, as a phase function would weight the light.
+  const Vec3f axis = Vec3f(1, 0.4F, -0.7F).normalized();
+  const auto f = [&](const Vec3f& d) { return 1.0 + d.dot(axis) + 0.3 * d.y * d.z; };
+  double expected = integrate(
+      [&](const Vec3f& d) {
+        const LightValue value = lights.evaluate(d);
+        const bool in_sun = lights.sun() && lights.sun()->contains(d);
+        return f(d) *
+               (luminance(value.radiance) - (in_sun ? luminance(lights.sun()->radiance()) : 0.0F));
+      },
+      1536, 768);
+  if (lights.sun())
+    expected += f(lights.sun()->direction()) * luminance(lights.sun()->irradiance());
+  RandomStream random(21, 22, 23, 24);
+  testing::RunningStatistics estimates;
+  for (int i = 0; i < 500'000; ++i) {
+    const float u0 = random.uniform();
+    const float u1 = random.uniform();
+    const LightSample sample = lights.sample(u0, u1, random.uniform());
+    estimates.add(sample.pdf > 0 ? f(sample.direction) * luminance(sample.radiance) / sample.pdf
+                                 : 0);
+  }
+  EXPECT_TRUE(testing::check_mean(name, estimates, expected, {.absolute = 1e-4 * expected}));
+}
+
+struct Case {
+  std::string name;
+  Lights lights;
+};
+
+std::vector<Case> all_lights() {
+  const Sun sun({.elevation = 30, .azimuth = 200}, UpAxis::kY);
+  const ImageEnvironment rough(rough_image(), UpAxis::kY, "rough");
+  const ImageEnvironment black(grey_image(8, 4, [](int, int) { return 0.0F; }), UpAxis::kY, "b");
+  const ImageEnvironment one(grey_image(1, 1, [](int, int) { return 2.0F; }), UpAxis::kY, "1");
+  return {{"constant", Lights(ConstantEnvironment(Spectrum(0.5F)))},
+          {"constant and sun", Lights(ConstantEnvironment(Spectrum(0.5F)), sun)},
+          {"sun alone", Lights(ConstantEnvironment(Spectrum(0)), sun)},
+          {"image", Lights(rough)},
+          {"image and sun", Lights(rough, sun)},
+          {"black image", Lights(black)},
+          {"black image and sun", Lights(black, sun)},
+          {"image of one pixel", Lights(one)},
+          {"sky", Lights(make_sky({.elevation = 30, .azimuth = 200}, UpAxis::kY))},
+          {"sky and sun", Lights(make_sky({.elevation = 30, .azimuth = 200}, UpAxis::kY), sun)}};
+}
+
+TEST(Lights, SamplesFollowADensityThatIntegratesToOne) {
+  for (const Case& c : all_lights()) expect_samples_follow_pdf(c.name, c.lights);
+}
+
+TEST(Lights, SamplesEstimateTheIntegralOfTheLight) {
+  for (const Case& c : all_lights()) expect_estimates_integral(c.name, c.lights);
+}
+
+TEST(Lights, ASampleCarriesWhatEvaluationGives) {
+  for (const Case& c : all_lights()) {
+    RandomStream random(31, 32, 33, 34);
+    for (int i = 0; i < 20'000; ++i) {
+      const float u0 = random.uniform();
+      const float u1 = random.uniform();
+      const LightSample sample = c.lights.sample(u0, u1, random.uniform());
+      const LightValue value = c.lights.evaluate(sample.direction);
+      ASSERT_EQ(sample.pdf, value.pdf) << c.name;
+      ASSERT_EQ(sample.radiance, value.radiance) << c.name;
+      ASSERT_TRUE(std::isfinite(sample.pdf) && is_finite(sample.radiance)) << c.name;
+    }
+  }
+}
+
+TEST(Lights, ExtremesOfTheUniformNumbersAreDirections) {
+  constexpr float kLast = 1.0F - 0x1p-24F;
+  for (const Case& c : all_lights()) {
+    for (const float u0 : {0.0F, kLast}) {
+      for (const float u1 : {0.0F, kLast}) {
+        for (const float u2 : {0.0F, kLast}) {
+          const LightSample sample = c.lights.sample(u0, u1, u2);
+          EXPECT_NEAR(sample.direction.length(), 1, 1e-6) << c.name;
+          EXPECT_TRUE(std::isfinite(sample.pdf)) << c.name;
+        }
+      }
+    }
+  }
+}
+
+TEST(Lights, KnowsWhenThereIsNoLight) {
+  const ImageEnvironment black(grey_image(8, 4, [](int, int) { return 0.0F; }), UpAxis::kY, "b");
+  EXPECT_TRUE(Lights(black).is_dark());
+  EXPECT_TRUE(Lights(ConstantEnvironment(Spectrum(0))).is_dark());
+  EXPECT_FALSE(Lights(ConstantEnvironment(Spectrum(1))).is_dark());
+  EXPECT_FALSE(Lights(black, Sun({}, UpAxis::kY)).is_dark());
+  EXPECT_EQ(Lights(black).pdf({0, 1, 0}), kUniformSpherePdf);
+}
+
+TEST(ConstantEnvironment, RefusesNegativeLight) {
+  EXPECT_THROW(ConstantEnvironment(Spectrum(1, -1, 0)), Error);
+  EXPECT_THROW(ConstantEnvironment(Spectrum(std::numeric_limits<float>::infinity())), Error);
+}
+
+TEST(ImageEnvironment, FollowsTheLatLongConvention) {
+  // With y up: the centre is +z, the left quarter +x, the right quarter -x, the top +y.
+  expect_near(lat_long_direction(0.5F, 0, UpAxis::kY), {0, 0, 1});
+  expect_near(lat_long_direction(0.25F, 0, UpAxis::kY), {1, 0, 0});
+  expect_near(lat_long_direction(0.75F, 0, UpAxis::kY), {-1, 0, 0});
+  expect_near(lat_long_direction(0.5F, 1, UpAxis::kY), {0, 1, 0});
+  // With z up: the centre is -y, the left quarter still +x, the top +z.
+  expect_near(lat_long_direction(0.5F, 0, UpAxis::kZ), {0, -1, 0});
+  expect_near(lat_long_direction(0.25F, 0, UpAxis::kZ), {1, 0, 0});
+  expect_near(lat_long_direction(0.5F, 1, UpAxis::kZ), {0, 0, 1});
+  for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
+    const LatLong position = lat_long(lat_long_direction(0.3F, std::cos(1.1F), up), up);
+    EXPECT_NEAR(position.u, 0.3F, 1e-6);
+    EXPECT_NEAR(position.v, 1.1F / kPi, 1e-6);
+  }
+}
+
+TEST(ImageEnvironment, ShowsThePixelThatLiesInADirection) {
+  const Image image = grey_image(8, 4, [](int column, int row) { return 10.0F * row + column; });
+  for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
+    const ImageEnvironment environment(image, up, "numbers");
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 8; ++column) {
+        const auto height = static_cast<float>(std::cos(kPi * (row + 0.5) / 4));
+        const Vec3f d = lat_long_direction((column + 0.5F) / 8, height, up);
+        EXPECT_NEAR(environment.evaluate(d).radiance.x, 10.0F * row + column, 1e-4);
+      }
+    }
+  }
+}
+
+TEST(ImageEnvironment, IsContinuousAcrossItsSeam) {
+  const ImageEnvironment environment(rough_image(), UpAxis::kY, "rough");
+  const float left = environment.evaluate(lat_long_direction(1e-6F, 0.1F, UpAxis::kY)).radiance.x;
+  const float right =
+      environment.evaluate(lat_long_direction(1 - 1e-6F, 0.1F, UpAxis::kY)).radiance.x;
+  EXPECT_NEAR(left, right, 1e-4);
+}
+
+TEST(ImageEnvironment, NamesThePixelThatIsNoLight) {
+  for (const float bad :
+       {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    const Image image =
+        grey_image(8, 4, [&](int column, int row) { return column == 5 && row == 2 ? bad : 1.0F; });
+    try {
+      ImageEnvironment(image, UpAxis::kY, "bad.exr");
+      FAIL() << "accepted " << bad;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("bad.exr: pixel (5, 2)"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST(Sun, RadianceTimesSolidAngleIsItsIrradiance) {
+  const Sun sun({.elevation = 20, .azimuth = 80, .irradiance = Spectrum(3, 2, 1)}, UpAxis::kZ);
+  // The solid angle of a cone, in a form that doesn't cancel.
+  const double sine = std::sin(0.5 * 0.2665 * kPi / 180);
+  EXPECT_NEAR(Sun::solid_angle(), 4 * kPi * sine * sine, 1e-6 * Sun::solid_angle());
+  EXPECT_NEAR(sun.radiance().x * Sun::solid_angle(), 3, 1e-5);
+  EXPECT_NEAR(sun.radiance().z * Sun::solid_angle(), 1, 1e-5);
+}
+
+TEST(Sun, TheDiscThatRaysSeeHasTheSampledSolidAngle) {
+  // Uniform points of a square around the disc, in the plane tangent to the sphere: the fraction
+  // inside is π r² / side², up to the curvature (2e-5).
+  const Sun sun({.elevation = 33, .azimuth = 77}, UpAxis::kY);
+  const TangentFrame frame(sun.direction());
+  const double radius = std::tan(0.2665 * kPi / 180);
+  RandomStream random(41, 42, 43, 44);
+  constexpr int kSamples = 2'000'000;
+  uint64_t inside = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = (2 * random.uniform() - 1) * 1.1 * radius;
+    const double y = (2 * random.uniform() - 1) * 1.1 * radius;
+    const Vec3f d = frame.to_world(static_cast<float>(x), static_cast<float>(y), 1).normalized();
+    inside += sun.contains(d) ? 1 : 0;
+  }
+  const double expected = kPi / (2.2 * 2.2);
+  const double error = std::sqrt(expected * (1 - expected) / kSamples);
+  EXPECT_TRUE(testing::check_mean("fraction inside", static_cast<double>(inside) / kSamples, error,
+                                  kSamples, expected, {.absolute = 5e-5}));
+}
+
+TEST(Sun, EverySampledDirectionLiesInTheDisc) {
+  for (const double azimuth : {0.0, 45.0, 190.0}) {
+    for (const double elevation : {-90.0, -5.0, 0.0, 37.0, 90.0}) {
+      const Sun sun({.elevation = elevation, .azimuth = azimuth}, UpAxis::kY);
+      for (int i = 0; i < 1000; ++i) {
+        const float u1 = static_cast<float>(i) / 1000;
+        for (const float u0 : {0.0F, 0.5F, 1.0F - 0x1p-24F}) {
+          ASSERT_TRUE(sun.contains(sun.sample(u0, u1)));
+        }
+      }
+    }
+  }
+}
+
+TEST(Sun, IsDimmerAndRedderWhenItIsLow) {
+  const Spectrum high = direct_sun_irradiance(60, 3);
+  const Spectrum low = direct_sun_irradiance(5, 3);
+  EXPECT_NEAR(luminance(high), kPi, 0.3 * kPi);  // about 100 klx
+  EXPECT_LT(luminance(low), 0.3F * luminance(high));
+  EXPECT_GT(low.x / low.z, 2 * high.x / high.z);
+  EXPECT_GT(direct_sun_irradiance(0, 3).x, 0);
+}
+
+TEST(Sun, RefusesImpossibleParameters) {
+  EXPECT_THROW(Sun({.elevation = 91}, UpAxis::kY), Error);
+  EXPECT_THROW(Sun({.turbidity = 1}, UpAxis::kY), Error);
+  EXPECT_THROW(Sun({.irradiance = Spectrum(-1)}, UpAxis::kY), Error);
+}
+
+TEST(DaylightSky, HasTheZenithLuminanceOfThePaper) {
+  // T = 3, sun 45° high: (7.1649) tan((4/9 - 1/40) π/2) + 1.7727 kcd/m² [Preetham99, A.2].
+  const double expected =
+      (7.1649 * std::tan((4.0 / 9 - 1.0 / 40) * kPi / 2) + 1.7727) * kRadiancePerKilocandela;
+  const DaylightSky sky({.elevation = 45});
+  const Spectrum zenith = sky.radiance(1, std::cos(kPi / 4));
+  EXPECT_NEAR(luminance(zenith), expected, 1e-3 * expected);
+  EXPECT_GT(zenith.z, 1.5F * zenith.x);  // blue
+}
+
+TEST(DaylightSky, IsBrightestAroundTheSunAndMildBelowTheHorizon) {
+  const SunParameters sun{.elevation = 25, .azimuth = 110};
+  for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
+    const ImageEnvironment sky = make_sky(sun, up);
+    const auto at = [&](double elevation, double azimuth) {
+      return luminance(sky.evaluate(sky_direction(elevation, azimuth, up)).radiance);
+    };
+    EXPECT_GT(at(25, 110), 2 * at(25, 290));
+    EXPECT_GT(at(25, 110), 2 * at(90, 0));
+    EXPECT_LT(at(-60, 0), at(5, 0));
+    EXPECT_GT(at(-60, 0), 0.02F);
+  }
+}
+
+TEST(DaylightSky, RefusesASunBelowTheHorizon) {
+  EXPECT_THROW(make_sky({.elevation = -1}, UpAxis::kY), Error);
+  EXPECT_THROW(make_sky({.elevation = 10, .turbidity = 20}, UpAxis::kY), Error);
+}
+
+}  // namespace
+}  // namespace freepath
