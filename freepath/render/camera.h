@@ -51,8 +51,8 @@ class Camera {
 /// The line of sight that frame_box chooses: the camera stands in the south-south-east (the
 /// azimuths are those of sky_direction) and a little below the middle of the box, so that it looks
 /// up to it as one does to a cloud.
-inline constexpr double kFramingAzimuth = 150;   // [degrees]
-inline constexpr double kFramingElevation = -8;  // [degrees]
+inline constexpr double kFramingAzimuth = 150;    // [degrees]
+inline constexpr double kFramingElevation = -12;  // [degrees]
 
 /// A view of the whole box, as close as that allows but for a margin of 5 % of the picture.
 /// @param bounds what to show [world]

@@ -118,7 +118,7 @@ ImageEnvironment make_sky(const SunParameters& sun, UpAxis up) {
       ground_irradiance += radiance * static_cast<float>(solid_angle * std::cos(angle));
     }
   }
-  const Spectrum ground_albedo(0.21F, 0.20F, 0.18F);
+  const Spectrum ground_albedo(0.19F, 0.18F, 0.15F);
   const Spectrum ground = ground_irradiance * ground_albedo * std::numbers::inv_pi_v<float>;
   constexpr double kHaze = 3 * kRadians;  // angle over which the ground fades into the horizon
   for (int row = kHeight / 2; row < kHeight; ++row) {

@@ -35,7 +35,7 @@ class DaylightSky {
 };
 
 /// The sky baked into an image of 512×256 pixels, without the sun's disc. Below the horizon lies a
-/// ground that reflects a fifth of the light of sun and sky; it fades into the horizon over some
+/// ground that reflects some 18 % of the light of sun and sky; it fades into the horizon over some
 /// degrees, as in haze.
 /// @throws Error as DaylightSky
 ImageEnvironment make_sky(const SunParameters& sun, UpAxis up);
