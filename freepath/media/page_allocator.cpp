@@ -45,4 +45,12 @@ void free_pages(void* pages, std::size_t bytes) noexcept {
   if (pages != nullptr) munmap(pages, rounded(bytes));
 }
 
+void release_pages(std::span<std::byte> part) noexcept {
+  const auto begin = reinterpret_cast<std::uintptr_t>(part.data());
+  const std::size_t head = (kSmallPage - begin % kSmallPage) % kSmallPage;
+  if (part.size() < head + kSmallPage) return;
+  const std::size_t size = (part.size() - head) / kSmallPage * kSmallPage;
+  madvise(part.data() + head, size, MADV_DONTNEED);
+}
+
 }  // namespace freepath

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <span>
 #include <utility>
 
 namespace freepath {
@@ -15,6 +16,8 @@ namespace freepath {
 void* allocate_pages(std::size_t bytes);
 /// Gives back what allocate_pages(bytes) returned.
 void free_pages(void* pages, std::size_t bytes) noexcept;
+/// Gives back the memory of the whole pages within a part of them, which then reads as zero.
+void release_pages(std::span<std::byte> part) noexcept;
 
 /// Allocator of zeroed pages for std::vector. Growing by `resize(n)` leaves new elements as the
 /// operating system gave them, zero, without touching them; hence never shrink and grow again.

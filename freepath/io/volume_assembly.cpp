@@ -1,0 +1,220 @@
+#include "freepath/io/volume_assembly.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+#include "freepath/base/error.h"
+
+namespace freepath::io {
+namespace {
+
+uint64_t cube(int size) { return uint64_t(size) * uint64_t(size) * uint64_t(size); }
+
+Vec3i brick_of(const Vec3i& voxel) { return {voxel.x >> 3, voxel.y >> 3, voxel.z >> 3}; }
+
+void extend(ValueScan& scan, const Vec3i& low, const Vec3i& high) {
+  for (int axis = 0; axis < 3; ++axis) {
+    scan.active_min[axis] = std::min(scan.active_min[axis], low[axis]);
+    scan.active_max[axis] = std::max(scan.active_max[axis], high[axis]);
+  }
+}
+
+/// Grows the bounds by the active voxels of a leaf; each word of the mask is a slice in x, each
+/// byte of a word a row in y.
+void extend_by_mask(ValueScan& scan, const Vec3i& origin, const uint64_t* mask) {
+  uint64_t slices = 0;
+  int first_x = 8, last_x = -1;
+  for (int x = 0; x < 8; ++x) {
+    if (mask[x] == 0) continue;
+    slices |= mask[x];
+    first_x = std::min(first_x, x);
+    last_x = x;
+  }
+  if (slices == 0) return;
+  uint64_t rows = slices;
+  for (int shift = 8; shift < 64; shift *= 2) rows |= rows >> shift;
+  const auto z_bits = static_cast<uint8_t>(rows);
+  extend(scan, origin + Vec3i(first_x, std::countr_zero(slices) / 8, std::countr_zero(z_bits)),
+         origin + Vec3i(last_x, 7 - std::countl_zero(slices) / 8, 7 - std::countl_zero(z_bits)));
+}
+
+/// Whether a value can be a density as it stands. False for NaN.
+template <class T>
+bool is_density(T value) {
+  return value >= T(0) && value <= T(std::numeric_limits<float>::max());
+}
+
+/// Whether clamping can repair it.
+template <class T>
+bool is_clampable(T value) {
+  return value < T(0) && value >= T(std::numeric_limits<float>::lowest());
+}
+
+void record_bad(ValueScan& scan, uint64_t place, const Vec3i& voxel, double value) {
+  if (!scan.bad || place < scan.bad->place) scan.bad = ValueScan::Bad{place, voxel, value};
+}
+
+[[noreturn]] void fail_bad(const std::string& where, const ValueScan::Bad& bad) {
+  const std::string voxel =
+      fmt::format("{}: voxel ({}, {}, {})", where, bad.voxel.x, bad.voxel.y, bad.voxel.z);
+  if (std::isnan(bad.value)) fail("{} is NaN; densities must be finite: repair the grid", voxel);
+  if (std::isinf(bad.value)) fail("{} is infinite; densities must be finite: repair the grid", voxel);
+  if (std::abs(bad.value) > std::numeric_limits<float>::max()) {
+    fail("{} is {}, out of the range of float: scale the grid down", voxel, bad.value);
+  }
+  fail("{} is negative ({}); densities are 0 or more: repair the grid, or have negative ones taken "
+       "as 0 (--negative clamp)",
+       voxel, bad.value);
+}
+
+BrickMapBuilder make_builder(const VolumeLayout& layout) {
+  ValueScan bounds;
+  for (const Vec3i& leaf : layout.leaves) extend(bounds, leaf, leaf + Vec3i(7));
+  std::unordered_set<float> tile_values;
+  for (const VolumeTile& tile : layout.tiles) {
+    extend(bounds, tile.origin, tile.origin + Vec3i(tile.size - 1));
+    tile_values.insert(static_cast<float>(tile.value));
+  }
+  return {bounds.active_min, bounds.active_max, layout.leaves.size() + tile_values.size()};
+}
+
+}  // namespace
+
+void ValueScan::merge(const ValueScan& other) {
+  active_voxels += other.active_voxels;
+  negative_voxels += other.negative_voxels;
+  minimum = std::min(minimum, other.minimum);
+  maximum = std::max(maximum, other.maximum);
+  extend(*this, other.active_min, other.active_max);
+  if (other.bad) record_bad(*this, other.bad->place, other.bad->voxel, other.bad->value);
+}
+
+float ValueCheck::tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) const {
+  extend(scan, tile.origin, tile.origin + Vec3i(tile.size - 1));
+  scan.active_voxels += cube(tile.size);
+  auto value = static_cast<float>(tile.value);
+  if (!is_density(tile.value)) {
+    if (negative == NegativePolicy::kClamp && is_clampable(tile.value)) {
+      scan.negative_voxels += cube(tile.size);
+      value = 0;
+    } else {
+      record_bad(scan, place, tile.origin, tile.value);
+    }
+  }
+  scan.minimum = std::min(scan.minimum, value);
+  scan.maximum = std::max(scan.maximum, value);
+  return value;
+}
+
+template <class T>
+void ValueCheck::leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t place,
+                      float* brick, ValueScan& scan) const {
+  extend_by_mask(scan, origin, mask);
+  float minimum = scan.minimum, maximum = scan.maximum;
+  for (int slice = 0; slice < 8; ++slice) {
+    const uint64_t bits = mask[slice];
+    scan.active_voxels += static_cast<uint64_t>(std::popcount(bits));
+    for (int i = 0; i < 64; ++i) {
+      const int offset = slice * 64 + i;
+      if (((bits >> i) & 1) == 0) {
+        brick[offset] = 0;
+        continue;
+      }
+      auto value = static_cast<float>(values[offset]);
+      if (!is_density(values[offset])) [[unlikely]] {
+        if (negative == NegativePolicy::kClamp && is_clampable(values[offset])) {
+          ++scan.negative_voxels;
+          value = 0;
+        } else {
+          record_bad(scan, place, origin + Vec3i(slice, i >> 3, i & 7),
+                     static_cast<double>(values[offset]));
+        }
+      }
+      brick[offset] = value;
+      minimum = std::min(minimum, value);
+      maximum = std::max(maximum, value);
+    }
+  }
+  scan.minimum = minimum;
+  scan.maximum = maximum;
+}
+
+template void ValueCheck::leaf<float>(const float*, const uint64_t*, const Vec3i&, uint64_t, float*,
+                                      ValueScan&) const;
+template void ValueCheck::leaf<double>(const double*, const uint64_t*, const Vec3i&, uint64_t,
+                                       float*, ValueScan&) const;
+
+FieldAssembly::FieldAssembly(std::string where, const LoadOptions& options, VolumeLayout layout,
+                             bool keep_values)
+    : where_(std::move(where)), check_{options.negative}, layout_(std::move(layout)) {
+  if (layout_.leaves.empty() && layout_.tiles.empty()) {
+    fail("{}: it has no active voxels; choose another grid", where_);
+  }
+  if (keep_values) {
+    try {
+      builder_.emplace(make_builder(layout_));
+    } catch (const Error& error) {
+      fail("{}: {}", where_, error.what());
+    }
+  }
+  for (std::size_t i = 0; i < layout_.tiles.size(); ++i) {
+    const VolumeTile& tile = layout_.tiles[i];
+    const float value = check_.tile(tile, layout_.leaves.size() + i, tile_scan_);
+    const Vec3i first = brick_of(tile.origin);
+    if (builder_) builder_->add_constant_bricks(first, first + Vec3i(tile.size / 8), value);
+  }
+  // Last, since the span holds until the next addition.
+  if (builder_) bricks_ = builder_->add_bricks([this] {
+    std::vector<Vec3i> bricks(layout_.leaves.size());
+    std::transform(layout_.leaves.begin(), layout_.leaves.end(), bricks.begin(), brick_of);
+    return bricks;
+  }());
+}
+
+ValueScan FieldAssembly::with_tiles(ValueScan scan) const {
+  scan.merge(tile_scan_);
+  if (scan.active_voxels == 0) fail("{}: it has no active voxels; choose another grid", where_);
+  if (scan.bad) fail_bad(where_, *scan.bad);
+  return scan;
+}
+
+LoadedField FieldAssembly::finish(std::string name, const Matrix4d& index_to_world,
+                                  const ValueScan& leaves) && {
+  const ValueScan scan = with_tiles(leaves);
+  LoadedField loaded;
+  loaded.active_voxels = scan.active_voxels;
+  loaded.active_tiles = layout_.tiles.size();
+  loaded.clamped_voxels = scan.negative_voxels;
+  loaded.minimum = scan.minimum;
+  loaded.maximum = scan.maximum;
+  if (layout_.background != 0) {
+    loaded.warnings.push_back(fmt::format(
+        "{}: inactive voxels hold {}, but count as 0", where_, layout_.background));
+  }
+  if (scan.negative_voxels > 0) {
+    loaded.warnings.push_back(
+        fmt::format("{}: {} negative densities were taken as 0", where_, scan.negative_voxels));
+  }
+  builder_->set_active_bounds(scan.active_min, scan.active_max);
+  loaded.field = {std::move(name), std::move(*builder_).finish(), index_to_world};
+  return loaded;
+}
+
+void FieldAssembly::describe(const ValueScan& leaves, GridInfo& info) const {
+  ValueScan scan = leaves;
+  scan.merge(tile_scan_);
+  info.active_voxels = scan.active_voxels;
+  info.active_tiles = layout_.tiles.size();
+  if (scan.active_voxels > 0) {
+    info.active_min = scan.active_min;
+    info.active_max = scan.active_max;
+    info.minimum = scan.minimum;
+    info.maximum = scan.maximum;
+  }
+  with_tiles(leaves);
+}
+
+}  // namespace freepath::io

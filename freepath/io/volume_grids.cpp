@@ -1,0 +1,133 @@
+// Choosing among the grids of a file, and the reasons against some.
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "freepath/base/error.h"
+#include "freepath/io/volume_assembly.h"
+
+namespace freepath {
+
+GridSelection parse_grid_selection(std::string_view text) {
+  GridSelection selection;
+  if (text.empty()) return selection;
+  int index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error == std::errc() && end == text.data() + text.size() && index >= 0) {
+    selection.index = index;
+  } else {
+    selection.name = std::string(text);
+  }
+  return selection;
+}
+
+namespace io {
+namespace {
+
+std::string listed(const std::vector<GridInfo>& grids) {
+  std::string list;
+  for (const GridInfo& grid : grids) {
+    list += fmt::format("{}{} \"{}\" ({})", list.empty() ? "" : ", ", grid.index, grid.name,
+                        grid.type);
+  }
+  return list;
+}
+
+bool is_loadable(const GridInfo& grid) { return grid.loadable; }
+
+}  // namespace
+
+std::size_t select_grid(const std::string& file, const std::vector<GridInfo>& grids,
+                        const GridSelection& selection) {
+  if (grids.empty()) fail("{}: the file holds no grids", file);
+  if (selection.index) {
+    const int index = *selection.index;
+    if (index < 0 || static_cast<std::size_t>(index) >= grids.size()) {
+      fail("{}: there is no grid {}; it holds {}", file, index, listed(grids));
+    }
+    return static_cast<std::size_t>(index);
+  }
+  std::string wanted = selection.name.value_or("density");
+  constexpr std::string_view kFirst = "[0]";
+  if (wanted.ends_with(kFirst)) wanted.resize(wanted.size() - kFirst.size());
+  const auto named = std::find_if(grids.begin(), grids.end(),
+                                  [&](const GridInfo& grid) { return grid.name == wanted; });
+  if (named != grids.end()) return static_cast<std::size_t>(named - grids.begin());
+  if (selection.name) {
+    fail("{}: there is no grid named \"{}\"; it holds {}", file, wanted, listed(grids));
+  }
+  const auto loadable = std::count_if(grids.begin(), grids.end(), is_loadable);
+  if (loadable == 1) {
+    return static_cast<std::size_t>(std::find_if(grids.begin(), grids.end(), is_loadable) -
+                                    grids.begin());
+  }
+  if (grids.size() == 1) return 0;  // its own reason says more than a choice of one
+  fail("{}: no grid is named \"density\" and {} could be one; choose (--grid) among {}", file,
+       loadable == 0 ? "none" : "several", listed(grids));
+}
+
+void make_names_unique(std::vector<GridInfo>& grids) {
+  std::map<std::string, int> seen;
+  for (GridInfo& grid : grids) {
+    const int count = seen[grid.name]++;
+    if (count > 0) grid.name += fmt::format("[{}]", count);
+  }
+}
+
+void set_failure(const std::string& file, std::string_view message, GridInfo& grid) {
+  grid.loadable = false;
+  if (!grid.reason.empty()) return;
+  for (const std::string& place : {grid_place(file, grid.name), file}) {
+    if (message.starts_with(place + ": ")) {
+      message.remove_prefix(place.size() + 2);
+      break;
+    }
+  }
+  grid.reason = message;
+}
+
+std::string grid_place(const std::string& file, const std::string& grid) {
+  return fmt::format("{}: grid \"{}\"", file, grid);
+}
+
+std::string reason_against_class(const std::string& grid_class) {
+  if (grid_class == "level set") {
+    return "it is a level set (signed distances), not a density; convert it to a fog volume "
+           "(openvdb::tools::sdfToFogVolume, or Convert VDB in Houdini)";
+  }
+  if (grid_class == "staggered") return "it is a staggered velocity grid, not a density";
+  return {};
+}
+
+std::string reason_against_transform(const Matrix4d& index_to_world) {
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      if (!std::isfinite(index_to_world[row][column])) {
+        return "its transform is not finite; set another";
+      }
+    }
+  }
+  double box = 1;  // volume of a voxel if its edges were perpendicular
+  for (int row = 0; row < 3; ++row) {
+    box *= Vec3d(index_to_world[row][0], index_to_world[row][1], index_to_world[row][2]).length();
+  }
+  const double voxel = std::abs(index_to_world.fastMinor(0, 1, 2, 0, 1, 2));
+  if (!(box > 0) || !(voxel > 1e-9 * box)) {
+    return "its transform is not invertible (voxels have no volume); set another";
+  }
+  return {};
+}
+
+std::string reason_against_type(const std::string& type) {
+  if (type == "points") {
+    return "it holds points, not densities; rasterise them first (VDB from Particles in Houdini)";
+  }
+  return fmt::format("its voxels are of type {}; only float, half, double and the quantised floats "
+                     "of NanoVDB can be densities",
+                     type);
+}
+
+}  // namespace io
+}  // namespace freepath
