@@ -51,8 +51,9 @@ struct LatLong {
 
 inline LatLong lat_long(const Vec3f& direction, UpAxis up) {
   const Vec3f d = to_y_up(direction, up);
-  return {0.5F - std::atan2(d.x, d.z) * (0.5F * std::numbers::inv_pi_v<float>),
-          std::acos(std::clamp(d.y, -1.0F, 1.0F)) * std::numbers::inv_pi_v<float>};
+  constexpr float kInversePi = std::numbers::inv_pi_v<float>;
+  return {0.5F - fast_atan2(d.x, d.z) * (0.5F * kInversePi),
+          fast_atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y) * kInversePi};
 }
 
 /// The inverse of lat_long.
@@ -113,16 +114,16 @@ class ImageEnvironment {
   /// Bilinear interpolant at a point whose unit is the pixel, (0, 0) the centre of the first; it
   /// wraps around horizontally and is continued by the last row at the poles.
   Spectrum interpolate(float x, float y) const {
-    const float left = std::floor(x);
-    const float above = std::floor(y);
-    const float fx = x - left;
-    const float fy = y - above;
-    int column0 = static_cast<int>(left);
+    // Not below -1, so that truncating x + 1 rounds x down.
+    int column0 = static_cast<int>(x + 1.0F) - 1;
+    const int above = static_cast<int>(y + 1.0F) - 1;
+    const float fx = x - static_cast<float>(column0);
+    const float fy = y - static_cast<float>(above);
     int column1 = column0 + 1;
     if (column0 < 0) column0 += width_;
     if (column1 >= width_) column1 -= width_;
-    const int row0 = std::clamp(static_cast<int>(above), 0, height_ - 1);
-    const int row1 = std::clamp(static_cast<int>(above) + 1, 0, height_ - 1);
+    const int row0 = std::clamp(above, 0, height_ - 1);
+    const int row1 = std::clamp(above + 1, 0, height_ - 1);
     const Spectrum upper =
         radiance_[texel(column0, row0)] * (1.0F - fx) + radiance_[texel(column1, row0)] * fx;
     const Spectrum lower =

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -12,6 +13,23 @@
 #include "freepath/base/vector.h"
 
 namespace freepath {
+
+/// atan2(y, x) to within 5e-7, and 0 for the origin. An interpolant of atan(t)/t in t² through the
+/// Chebyshev nodes of [0, 1]; several times as fast as the library's, which the look-up of an
+/// environment would spend half its time in.
+inline float fast_atan2(float y, float x) {
+  const float ax = std::abs(x);
+  const float ay = std::abs(y);
+  const float t = std::min(ax, ay) / std::max({ax, ay, std::numeric_limits<float>::min()});
+  const float s = t * t;
+  const float low = (0.999999882F - 0.333318127F * s) + (0.199669618F - 0.140032902F * s) * (s * s);
+  const float high =
+      (0.0986886546F - 0.0588297531F * s) + (0.0237805186F - 0.00455979199F * s) * (s * s);
+  float angle = t * (low + high * (s * s) * (s * s));
+  if (ay > ax) angle = 0.5F * std::numbers::pi_v<float> - angle;
+  if (x < 0) angle = std::numbers::pi_v<float> - angle;
+  return std::copysign(angle, y);
+}
 
 /// Density of a uniform direction on the sphere [1/sr].
 inline constexpr float kUniformSpherePdf = 0.25F * std::numbers::inv_pi_v<float>;

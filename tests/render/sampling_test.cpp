@@ -24,6 +24,17 @@ std::vector<double> probabilities(const std::vector<AliasEntry>& table) {
   return result;
 }
 
+TEST(FastAtan2, AgreesWithTheLibraryEverywhere) {
+  for (int i = 0; i < 100'000; ++i) {
+    const double angle = (i / 50'000.0 - 1) * std::numbers::pi;
+    const auto y = static_cast<float>(0.7 * std::sin(angle));
+    const auto x = static_cast<float>(0.7 * std::cos(angle));
+    ASSERT_NEAR(fast_atan2(y, x), std::atan2(y, x), 5e-7) << angle;
+  }
+  EXPECT_EQ(fast_atan2(0, 0), 0);
+  EXPECT_EQ(fast_atan2(0, 1), 0);
+}
+
 TEST(AliasTable, StandsForTheDistribution) {
   const std::vector<std::vector<double>> cases = {
       {1}, {1, 1}, {0, 3}, {5, 0, 0, 0, 0}, {1e-20, 1, 1e20}, {0.1, 0.2, 0.3, 0.05, 0.35, 0}};
