@@ -1,5 +1,6 @@
 """The check of includes and citations finds planted violations, and only those."""
 
+import importlib.util
 import subprocess
 import sys
 import tempfile
@@ -9,7 +10,9 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 SCRIPT = Path(__file__).resolve().parent / "check_includes"
-check = SourceFileLoader("check_includes", str(SCRIPT)).load_module()
+_loader = SourceFileLoader("check_includes", str(SCRIPT))
+check = importlib.util.module_from_spec(importlib.util.spec_from_loader("check_includes", _loader))
+_loader.exec_module(check)
 
 BIBLIOGRAPHY = "@article{Kutz17,\n title = {A}\n}\n@book{Galtier13,\n title = {B}\n}\n"
 
