@@ -1,7 +1,229 @@
+// freepath info: what a volume file holds.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "apps/freepath/commands.h"
+#include "freepath/io/volume.h"
 
 namespace freepath::program {
+namespace {
 
-void add_info_command(CLI::App&) {}
+constexpr const char* kFooter =
+    R"(Lists the grids of a volume file (.vdb or .nvdb) and loads each that can be a density.
+--grid looks at one of them: a name (the first of that name, name[1] the second), or a number.
+
+Examples:
+  freepath info cloud.vdb
+  freepath info cloud.vdb --grid density
+  freepath info cloud.nvdb --json)";
+
+struct Options {
+  std::string file, grid;
+  bool json = false;
+};
+
+/// A grid and, where it can be loaded, what became of it.
+struct Described {
+  GridInfo info;
+  std::optional<LoadedField> loaded;
+};
+
+/// A transform in parts that say something to a reader.
+struct Placement {
+  Vec3d voxel_size;
+  Vec3d axis;
+  double angle = 0;  // [degrees]
+  bool mirrored = false, sheared = false;
+};
+
+Vec3d edge(const Matrix4d& matrix, int row) {
+  return {matrix[row][0], matrix[row][1], matrix[row][2]};
+}
+
+Placement placement_of(const Matrix4d& matrix) {
+  Placement placement;
+  Vec3d axes[3];
+  for (int row = 0; row < 3; ++row) {
+    placement.voxel_size[row] = edge(matrix, row).length();
+    axes[row] = edge(matrix, row).normalized();
+  }
+  placement.mirrored = axes[0].cross(axes[1]).dot(axes[2]) < 0;
+  constexpr double kTolerance = 1e-5;
+  for (int row = 0; row < 3; ++row) {
+    placement.sheared |= std::abs(axes[row].dot(axes[(row + 1) % 3])) > kTolerance;
+  }
+  if (placement.mirrored) {  // the rotation that is left once the axis is turned back
+    const int row = axes[0].x < 0 ? 0 : axes[1].y < 0 ? 1 : 2;
+    axes[row] = -axes[row];
+  }
+  const double cosine = (axes[0].x + axes[1].y + axes[2].z - 1) / 2;
+  placement.angle = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / M_PI;
+  if (placement.angle < 1e-3) placement.angle = 0;
+  placement.axis = Vec3d(axes[1].z - axes[2].y, axes[2].x - axes[0].z, axes[0].y - axes[1].x);
+  if (placement.axis.length() < 1e-9) {  // half a turn: the axis is what stays
+    placement.axis = Vec3d(std::sqrt(std::max(0.0, (axes[0].x + 1) / 2)),
+                           std::sqrt(std::max(0.0, (axes[1].y + 1) / 2)),
+                           std::sqrt(std::max(0.0, (axes[2].z + 1) / 2)));
+  }
+  placement.axis.normalize();
+  return placement;
+}
+
+/// Bounds of the active voxels, whole voxels, in the world.
+Box3d world_bounds(const GridInfo& info) {
+  Box3d box;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d point;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = ((corner >> axis) & 1) != 0 ? info.active_max[axis] + 0.5
+                                                : info.active_min[axis] - 0.5;
+    }
+    box.extendBy(point * info.index_to_world);
+  }
+  return box;
+}
+
+std::string size_text(double bytes) {
+  const char* const units[] = {"B", "KiB", "MiB", "GiB"};
+  int unit = 0;
+  for (; bytes >= 1024 && unit < 3; ++unit) bytes /= 1024;
+  return fmt::format("{:.{}f} {}", bytes, unit == 0 ? 0 : 1, units[unit]);
+}
+
+std::string transform_text(const GridInfo& info) {
+  const Placement placement = placement_of(info.index_to_world);
+  std::string text;
+  if (placement.angle != 0) {
+    text += fmt::format("rotated {:.4g} degrees about ({:.3g}, {:.3g}, {:.3g}), ", placement.angle,
+                        placement.axis.x, placement.axis.y, placement.axis.z);
+  }
+  if (placement.mirrored) text += "mirrored, ";
+  if (placement.sheared) text += "sheared, ";
+  const Vec3d move = edge(info.index_to_world, 3);
+  return text + fmt::format("moved by ({:.6g}, {:.6g}, {:.6g})", move.x, move.y, move.z);
+}
+
+void print_grid(const Described& grid) {
+  const GridInfo& info = grid.info;
+  const auto row = [](const char* name, const std::string& text) {
+    fmt::print("  {:<14} {}\n", name, text);
+  };
+  const Vec3d voxel = placement_of(info.index_to_world).voxel_size;
+  fmt::print("grid {}: \"{}\"\n", info.index, info.name);
+  row("type", fmt::format("{}, {}", info.type, info.grid_class));
+  row("voxel size", fmt::format("{:.6g} x {:.6g} x {:.6g}", voxel.x, voxel.y, voxel.z));
+  row("transform", transform_text(info));
+  if (info.active_voxels > 0) {
+    const Vec3i size = info.active_max - info.active_min + Vec3i(1);
+    const Box3d box = world_bounds(info);
+    row("world bounds",
+        fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.min.x, box.min.y,
+                    box.min.z, box.max.x, box.max.y, box.max.z));
+    row("voxel bounds",
+        fmt::format("({}, {}, {}) to ({}, {}, {}), {} x {} x {}", info.active_min.x,
+                    info.active_min.y, info.active_min.z, info.active_max.x, info.active_max.y,
+                    info.active_max.z, size.x, size.y, size.z));
+    row("range", fmt::format("{:.6g} to {:.6g}", info.minimum, info.maximum));
+    row("active", fmt::format("{} voxels, {} constant tiles among them", info.active_voxels,
+                              info.active_tiles));
+  }
+  row("in the file", size_text(static_cast<double>(info.stored_bytes)));
+  if (grid.loaded) {
+    const BrickMap& map = grid.loaded->field.voxels;
+    row("in memory", fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
+                                 size_text(static_cast<double>(map.memory_bytes())),
+                                 map.brick_count() - 1));
+    for (const std::string& warning : grid.loaded->warnings) row("warning", warning);
+  } else {
+    row("not loadable", info.reason);
+  }
+}
+
+nlohmann::json to_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
+nlohmann::json to_json(const Vec3i& v) { return {v.x, v.y, v.z}; }
+
+nlohmann::json grid_json(const Described& grid) {
+  const GridInfo& info = grid.info;
+  const Placement placement = placement_of(info.index_to_world);
+  nlohmann::json json{{"index", info.index},
+                      {"name", info.name},
+                      {"type", info.type},
+                      {"class", info.grid_class},
+                      {"voxel_size", to_json(placement.voxel_size)},
+                      {"active_voxels", info.active_voxels},
+                      {"active_tiles", info.active_tiles},
+                      {"stored_bytes", info.stored_bytes},
+                      {"loadable", info.loadable}};
+  for (int row = 0; row < 4; ++row) {
+    const double* const m = info.index_to_world[row];
+    json["index_to_world"].push_back({m[0], m[1], m[2], m[3]});
+  }
+  if (!info.loadable) json["reason"] = info.reason;
+  if (info.active_voxels > 0) {
+    const Box3d box = world_bounds(info);
+    json["world_bounds"] = {{"min", to_json(box.min)}, {"max", to_json(box.max)}};
+    json["active_bounds"] = {{"min", to_json(info.active_min)}, {"max", to_json(info.active_max)}};
+    json["minimum"] = info.minimum;
+    json["maximum"] = info.maximum;
+  }
+  if (grid.loaded) {
+    const BrickMap& map = grid.loaded->field.voxels;
+    json["memory_bytes"] = map.memory_bytes();
+    json["bricks"] = map.brick_count() - 1;
+    json["warnings"] = grid.loaded->warnings;
+  }
+  return json;
+}
+
+/// Loads what can be loaded, one grid at a time being in memory.
+template <class Use>
+void for_each_grid(const Options& options, Use use) {
+  std::vector<GridInfo> grids = list_grids(options.file);
+  if (!options.grid.empty()) {
+    const GridInfo chosen = find_grid(options.file, grids, parse_grid_selection(options.grid));
+    grids = {chosen};
+  }
+  for (const GridInfo& info : grids) {
+    Described described{info, std::nullopt};
+    if (info.loadable) {
+      LoadOptions load;
+      load.selection.index = info.index;
+      described.loaded = load_field(options.file, load);
+    }
+    use(described);
+  }
+}
+
+void run(const Options& options) {
+  if (options.json) {
+    nlohmann::json json{{"file", options.file}, {"grids", nlohmann::json::array()}};
+    for_each_grid(options, [&](const Described& grid) { json["grids"].push_back(grid_json(grid)); });
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}\n", options.file);
+  for_each_grid(options, print_grid);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("info", "Show the grids of a volume file");
+  command->footer(kFooter);
+  command->add_option("FILE", options->file, "Volume file (.vdb, .nvdb)")->required();
+  command->add_option("--grid", options->grid, "Only this grid: name or number");
+  command->add_flag("--json", options->json, "One JSON object on standard output");
+  command->callback([options] { run(*options); });
+}
 
 }  // namespace freepath::program

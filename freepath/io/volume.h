@@ -50,6 +50,12 @@ struct GridSelection {
 /// is the default.
 GridSelection parse_grid_selection(std::string_view text);
 
+/// The one of a file's grids that is selected.
+/// @param file only for the message
+/// @throws Error, listing what there is, if none is
+const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<GridInfo>& grids,
+                          const GridSelection& selection);
+
 struct LoadOptions {
   GridSelection selection;
   NegativePolicy negative = NegativePolicy::kError;

@@ -100,11 +100,6 @@ class FieldAssembly {
   ValueScan tile_scan_;
 };
 
-/// The one of the grids that is selected.
-/// @throws Error, listing what there is, if none is
-std::size_t select_grid(const std::string& file, const std::vector<GridInfo>& grids,
-                        const GridSelection& selection);
-
 /// Gives grids of the same name the suffixes "[1]", "[2]", ... behind the first.
 void make_names_unique(std::vector<GridInfo>& grids);
 

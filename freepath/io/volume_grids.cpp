@@ -9,6 +9,18 @@
 #include "freepath/io/volume_assembly.h"
 
 namespace freepath {
+namespace {
+
+std::string listed(const std::vector<GridInfo>& grids) {
+  std::string list;
+  for (const GridInfo& grid : grids) {
+    list += fmt::format("{}{} \"{}\" ({})", list.empty() ? "" : ", ", grid.index, grid.name,
+                        grid.type);
+  }
+  return list;
+}
+
+}  // namespace
 
 GridSelection parse_grid_selection(std::string_view text) {
   GridSelection selection;
@@ -23,50 +35,32 @@ GridSelection parse_grid_selection(std::string_view text) {
   return selection;
 }
 
-namespace io {
-namespace {
-
-std::string listed(const std::vector<GridInfo>& grids) {
-  std::string list;
-  for (const GridInfo& grid : grids) {
-    list += fmt::format("{}{} \"{}\" ({})", list.empty() ? "" : ", ", grid.index, grid.name,
-                        grid.type);
-  }
-  return list;
-}
-
-bool is_loadable(const GridInfo& grid) { return grid.loadable; }
-
-}  // namespace
-
-std::size_t select_grid(const std::string& file, const std::vector<GridInfo>& grids,
-                        const GridSelection& selection) {
-  if (grids.empty()) fail("{}: the file holds no grids", file);
+const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<GridInfo>& grids,
+                          const GridSelection& selection) {
+  if (grids.empty()) fail("{}: the file holds no grids", file.string());
   if (selection.index) {
     const int index = *selection.index;
     if (index < 0 || static_cast<std::size_t>(index) >= grids.size()) {
-      fail("{}: there is no grid {}; it holds {}", file, index, listed(grids));
+      fail("{}: there is no grid {}; it holds {}", file.string(), index, listed(grids));
     }
-    return static_cast<std::size_t>(index);
+    return grids[static_cast<std::size_t>(index)];
   }
   std::string wanted = selection.name.value_or("density");
   constexpr std::string_view kFirst = "[0]";
   if (wanted.ends_with(kFirst)) wanted.resize(wanted.size() - kFirst.size());
-  const auto named = std::find_if(grids.begin(), grids.end(),
-                                  [&](const GridInfo& grid) { return grid.name == wanted; });
-  if (named != grids.end()) return static_cast<std::size_t>(named - grids.begin());
+  const auto named = std::ranges::find(grids, wanted, &GridInfo::name);
+  if (named != grids.end()) return *named;
   if (selection.name) {
-    fail("{}: there is no grid named \"{}\"; it holds {}", file, wanted, listed(grids));
+    fail("{}: there is no grid named \"{}\"; it holds {}", file.string(), wanted, listed(grids));
   }
-  const auto loadable = std::count_if(grids.begin(), grids.end(), is_loadable);
-  if (loadable == 1) {
-    return static_cast<std::size_t>(std::find_if(grids.begin(), grids.end(), is_loadable) -
-                                    grids.begin());
-  }
-  if (grids.size() == 1) return 0;  // its own reason says more than a choice of one
-  fail("{}: no grid is named \"density\" and {} could be one; choose (--grid) among {}", file,
-       loadable == 0 ? "none" : "several", listed(grids));
+  const auto loadable = std::ranges::count(grids, true, &GridInfo::loadable);
+  if (loadable == 1) return *std::ranges::find(grids, true, &GridInfo::loadable);
+  if (grids.size() == 1) return grids[0];  // its own reason says more than a choice of one
+  fail("{}: no grid is named \"density\" and {} could be one; choose (--grid) among {}",
+       file.string(), loadable == 0 ? "none" : "several", listed(grids));
 }
+
+namespace io {
 
 void make_names_unique(std::vector<GridInfo>& grids) {
   std::map<std::string, int> seen;

@@ -460,11 +460,10 @@ std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file) {
 LoadedField load_nvdb_field(const VolumeFile& file, const LoadOptions& options) {
   const std::vector<NvdbGrid> grids = read_directory(file);
   const std::vector<GridInfo> infos = describe_directory(file, grids);
-  const std::size_t selected = select_grid(file.name(), infos, options.selection);
-  const GridInfo& info = infos[selected];
+  const GridInfo& info = find_grid(file.name(), infos, options.selection);
+  const NvdbGrid& grid = grids[static_cast<std::size_t>(info.index)];
   if (!info.loadable) fail("{}: {}", grid_place(file.name(), info.name), info.reason);
-  ReadGrid result = reader_of(grids[selected].metadata.gridType)(file, grids[selected], info,
-                                                                 options, true);
+  ReadGrid result = reader_of(grid.metadata.gridType)(file, grid, info, options, true);
   return std::move(*result.assembly).finish(info.name, info.index_to_world, result.scan);
 }
 

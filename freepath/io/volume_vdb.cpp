@@ -399,7 +399,7 @@ std::vector<GridInfo> list_vdb_grids(const VolumeFile& file) {
 LoadedField load_vdb_field(const VolumeFile& file, const LoadOptions& options) {
   const VdbDirectory directory = read_vdb_directory(file);
   const std::vector<GridInfo> grids = describe_directory(file, directory);
-  const GridInfo& info = grids[select_grid(file.name(), grids, options.selection)];
+  const GridInfo& info = find_grid(file.name(), grids, options.selection);
   if (!info.loadable) fail("{}: {}", grid_place(file.name(), info.name), info.reason);
   ReadGrid read = read_grid(file, directory, info, options, true);
   return std::move(*read.assembly).finish(info.name, info.index_to_world, read.scan);

@@ -1,0 +1,122 @@
+#include "freepath/io/volume_write.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include "freepath/base/error.h"
+#include "freepath/base/version.h"
+
+namespace freepath {
+namespace {
+
+using openvdb::FloatGrid;
+using Leaf = FloatGrid::TreeType::LeafNodeType;
+
+openvdb::math::Transform::Ptr transform_of(const Field& field) {
+  openvdb::Mat4d matrix;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      matrix(row, column) = field.index_to_world[row][column];
+    }
+  }
+  return openvdb::math::Transform::createLinearTransform(matrix);
+}
+
+/// Adds one brick, of which 0 is inactive, at its place.
+void add_brick(std::span<const float> voxels, const openvdb::Coord& origin,
+               FloatGrid::TreeType& tree) {
+  if (voxels[0] != 0 && std::ranges::all_of(voxels, [&](float v) { return v == voxels[0]; })) {
+    tree.addTile(1, origin, voxels[0], true);
+    return;
+  }
+  auto* const leaf = tree.touchLeaf(origin);
+  for (openvdb::Index offset = 0; offset < Leaf::SIZE; ++offset) {
+    if (voxels[offset] != 0) leaf->setValueOn(offset, voxels[offset]);
+  }
+}
+
+FloatGrid::Ptr grid_of(const Field& field, const VdbWriteOptions& options) {
+  const auto grid = FloatGrid::create(0.0F);
+  grid->setName(field.name);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->setSaveFloatAsHalf(options.half);
+  grid->setTransform(transform_of(field));
+  const BrickMap& map = field.voxels;
+  const Vec3i& counts = map.brick_counts();
+  std::size_t entry = 0;
+  for (int x = 0; x < counts.x; ++x) {
+    for (int y = 0; y < counts.y; ++y) {
+      for (int z = 0; z < counts.z; ++z) {
+        const uint32_t brick = map.index()[entry++];
+        if (brick == 0) continue;
+        const Vec3i origin = map.origin() + Vec3i(x, y, z) * BrickMap::kBrickSize;
+        add_brick(map.voxels().subspan(std::size_t{brick} * BrickMap::kBrickVoxels,
+                                       BrickMap::kBrickVoxels),
+                  openvdb::Coord(origin.x, origin.y, origin.z), grid->tree());
+      }
+    }
+  }
+  return grid;
+}
+
+/// A name beside the file's that ends with it, so that both are on one file system.
+std::filesystem::path name_beside(const std::filesystem::path& path) {
+  return path.parent_path() /
+         fmt::format(".{}.{}.part", path.filename().string(), static_cast<long>(getpid()));
+}
+
+/// Removes a file that was not finished.
+class PartialFile {
+ public:
+  explicit PartialFile(std::filesystem::path path) : path_(std::move(path)) {}
+  ~PartialFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids) {
+  openvdb::io::File file(path.string());
+  file.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+  openvdb::MetaMap metadata;
+  metadata.insertMeta("creator", openvdb::StringMetadata(fmt::format("freepath {}", version())));
+  file.write(grids, metadata);
+  file.close();
+}
+
+}  // namespace
+
+void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
+               const VdbWriteOptions& options) {
+  if (fields.empty()) fail("{}: there is no field to write", path.string());
+  if (std::filesystem::is_directory(path)) {
+    fail("{}: is a directory; name the file to write", path.string());
+  }
+  openvdb::initialize();
+  const PartialFile partial(name_beside(path));
+  try {
+    openvdb::GridCPtrVec grids;
+    for (const Field* field : fields) grids.push_back(grid_of(*field, options));
+    write_grids(partial.path(), grids);
+  } catch (const openvdb::Exception& error) {
+    fail("{}: can't be written: {}", path.string(), error.what());
+  } catch (const std::ios_base::failure& error) {
+    fail("{}: can't be written: {}", path.string(), error.what());
+  }
+  std::error_code status;
+  std::filesystem::rename(partial.path(), path, status);
+  if (status) fail("{}: can't be written: {}", path.string(), status.message());
+}
+
+}  // namespace freepath
