@@ -39,14 +39,9 @@ void check_component(const Component& component, const Component& first, std::si
   }
 }
 
-/// Longest world length of a voxel's edge, for the cost model alone.
+/// Edge of a cube with a voxel's volume [world], for the cost model alone.
 double voxel_edge(const Matrix4d& index_to_world) {
-  double edge = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double* row = index_to_world[axis];
-    edge = std::max(edge, std::hypot(row[0], row[1], row[2]));
-  }
-  return edge;
+  return std::cbrt(std::abs(index_to_world.determinant()));
 }
 
 }  // namespace

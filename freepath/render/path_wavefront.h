@@ -1,0 +1,105 @@
+#pragma once
+/// @file A wavefront of paths: all paths of a stretch of pixels, traced together.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "freepath/base/random.h"
+#include "freepath/media/phase_function.h"
+#include "freepath/render/camera.h"
+#include "freepath/render/film.h"
+#include "freepath/render/lights.h"
+#include "freepath/transport/walker.h"
+
+namespace freepath {
+
+/// What all paths of a picture share.
+struct PathSetup {
+  const Medium* medium = nullptr;
+  const Camera* camera = nullptr;
+  const Lights* lights = nullptr;
+  /// One walker that carries all channels, or one for each channel (a path each).
+  std::vector<Walker> walkers;
+  Absorption absorption = Absorption::kWeighted;
+  uint64_t seed = 0;
+  uint32_t max_scatterings = UINT32_MAX;
+  /// Russian roulette is played where no channel's throughput reaches this.
+  float roulette_threshold = 0.25F;
+  std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
+};
+
+/// A rectangle of work: `pixels` pixels from `first_pixel` on (row-major), samples
+/// [first_sample, first_sample + samples) of each.
+struct PathJob {
+  std::size_t first_pixel = 0;
+  std::size_t pixels = 0;
+  uint32_t first_sample = 0;
+  uint32_t samples = 0;
+};
+
+/// Traces paths through a medium lit from outside and from within: walk, scatter with next-event
+/// estimation and multiple importance sampling [Veach97, balance heuristic], Russian roulette,
+/// until every path has ended. A path that ends makes room for the next, so that the lanes stay
+/// full. One wavefront for each thread; its memory is used again.
+class PathWavefront {
+ public:
+  explicit PathWavefront(const PathSetup& setup);
+
+  /// Traces a job and adds its samples to the film, each pixel's in the order of their numbers.
+  void trace(const PathJob& job, Film& film);
+
+  const WalkStatistics& statistics() const { return statistics_; }
+  uint64_t paths() const { return paths_; }
+
+ private:
+  /// A path in flight. Its ray stands in the same slot of rays_.
+  struct Path {
+    Spectrum throughput;
+    Spectrum radiance;
+    float phase_pdf;    ///< Density with which the direction was drawn [1/sr].
+    uint32_t bounce;    ///< Scatterings so far.
+    uint32_t result;    ///< Place among the job's samples.
+    uint64_t lookups;
+    float alpha;
+    Spectrum albedo;
+    float depth;
+    float depth_weight;
+  };
+  /// Light on its way from a scattering to the lights.
+  struct ShadowPath {
+    std::size_t slot;
+    Spectrum radiance;  ///< What arrives if nothing is in between.
+  };
+
+  void trace_channel(const PathJob& job, int channel);
+  void start_path(const PathJob& job, std::size_t number, std::size_t slot, int channel);
+  /// Takes in what became of a path's flight; false if the path has ended.
+  bool advance(std::size_t slot);
+  void escape(Path& path, const Vec3f& direction) const;
+  bool scatter(Path& path, std::size_t slot);
+  void sample_light(const Path& path, std::size_t slot, const Vec3f& position,
+                    const Vec3f& direction, const HenyeyGreenstein& phase, RandomStream& random);
+  void record_first_event(Path& path, std::size_t slot) const;
+  Spectrum flight_values(const std::array<std::vector<float>, kChannels>& values,
+                         std::size_t slot) const;
+  void finish(const Path& path, int channel);
+  void trace_shadows();
+
+  const PathSetup& setup_;
+  std::vector<HenyeyGreenstein> phases_;   // of the components
+  std::vector<Spectrum> albedos_;          // of the components
+  std::vector<Path> paths_in_flight_;
+  RayStream rays_;
+  FlightStream flights_;
+  RayStream shadow_rays_;
+  FlightStream shadow_flights_;
+  std::vector<ShadowPath> shadows_;
+  WalkScratch scratch_;
+  std::vector<PathSample> results_;
+  const Walker* walker_ = nullptr;  // of the channel at work
+  WalkStatistics statistics_;
+  uint64_t paths_ = 0;
+};
+
+}  // namespace freepath

@@ -1,0 +1,50 @@
+#pragma once
+/// @file The renderer: samples of all pixels on all threads, in passes.
+
+#include <cstdint>
+#include <functional>
+
+#include "freepath/render/path_wavefront.h"
+
+namespace freepath {
+
+/// How much to render, and with what.
+struct RenderSettings {
+  uint32_t samples = 64;      ///< Of each pixel; ignored where time_limit is set.
+  double time_limit = 0;      ///< [s] 0: none. No pass begins once it is reached.
+  int threads = 0;            ///< 0: as many as the machine has.
+  uint32_t max_scatterings = UINT32_MAX;
+  std::size_t batch = 2048;   ///< Paths in flight per thread; the picture does not depend on it.
+  WalkSettings walk;
+};
+
+/// What is done so far.
+struct RenderProgress {
+  double samples_done = 0;   ///< Of each pixel, on average.
+  double samples_total = 0;  ///< 0: as many as the time allows.
+  double seconds = 0;
+};
+
+/// A picture and how it came about.
+struct RenderResult {
+  Film film;
+  WalkStatistics statistics;
+  uint64_t paths = 0;
+  uint32_t samples = 0;  ///< Of each pixel; where interrupted, of the pixel with the fewest.
+  double seconds = 0;
+  bool interrupted = false;
+};
+
+/// Called now and then, by one thread at a time; false ends the rendering after the batches at work.
+using ProgressFunction = std::function<bool(const RenderProgress&)>;
+
+/// Renders a medium lit from outside and from within, without a limit to the number of scatterings.
+/// The picture depends on medium, camera, lights, walk settings and sample count alone.
+///
+/// A medium whose extinction is grey is traced with one path for all channels, else with one path
+/// for each channel of every sample.
+/// @throws Error for methods that do not exist, and (an internal error) if a sample is not finite
+RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
+                    const RenderSettings& settings, const ProgressFunction& progress = {});
+
+}  // namespace freepath
