@@ -1,12 +1,15 @@
 #include "freepath/io/image.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <system_error>
@@ -73,30 +76,48 @@ fs::path resolved(const std::string& path) {
   return error ? fs::path(path) : real;
 }
 
-/// Writes with OpenImageIO into a file beside the target and renames it.
-void write_aside(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
-                 OIIO::TypeDesc type, const void* pixels) {
-  check_writable(path);
-  const fs::path target = resolved(path);
-  const std::string aside =
-      target.parent_path() / fmt::format(".{}.{}.partial", target.filename().string(), getpid());
-  const auto give_up = [&](const std::string& reason) {
-    std::error_code ignored;
-    fs::remove(aside, ignored);
-    fail("{}: can't write the image: {}", path, trimmed(reason));
-  };
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-  if (!output) give_up(OIIO::geterror());
-  if (!output->open(aside, spec)) give_up(output->geterror());
-  if (!output->write_image(type, pixels)) {
-    const std::string reason = output->geterror();
-    output->close();
-    give_up(reason);
+/// A file beside the target, which replaces it when it is complete and else disappears.
+class AsideFile {
+ public:
+  explicit AsideFile(const std::string& path) : path_(path), target_(resolved(path)) {
+    check_writable(path);
+    aside_ = target_.parent_path() /
+             fmt::format(".{}.{}.partial", target_.filename().string(), getpid());
   }
-  if (!output->close()) give_up(output->geterror());
-  std::error_code error;
-  fs::rename(aside, target, error);
-  if (error) give_up(error.message());
+  AsideFile(const AsideFile&) = delete;
+  AsideFile& operator=(const AsideFile&) = delete;
+  ~AsideFile() {
+    std::error_code ignored;
+    fs::remove(aside_, ignored);
+  }
+
+  std::string name() const { return aside_.string(); }
+
+  [[noreturn]] void give_up(const std::string& reason) const {
+    fail("{}: can't write the image: {}", path_, trimmed(reason));
+  }
+
+  void replace_target() const {
+    std::error_code error;
+    fs::rename(aside_, target_, error);
+    if (error) give_up(error.message());
+  }
+
+ private:
+  std::string path_;
+  fs::path target_, aside_;
+};
+
+/// Writes with OpenImageIO: into the file aside, or into a buffer if there is one.
+void encode(const AsideFile& file, const char* format, const OIIO::ImageSpec& spec,
+            OIIO::TypeDesc type, const void* pixels, OIIO::Filesystem::IOProxy* buffer = nullptr) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  if (!output) file.give_up(OIIO::geterror());
+  if (buffer != nullptr && !output->set_ioproxy(buffer)) file.give_up(output->geterror());
+  if (!output->open(file.name(), spec)) file.give_up(output->geterror());
+  const bool written = output->write_image(type, pixels);
+  const std::string reason = output->geterror();
+  if (!output->close() || !written) file.give_up(written ? output->geterror() : reason);
 }
 
 void check_consistent(const std::string& path, const Image& image) {
@@ -202,14 +223,16 @@ void write_exr(const std::string& path, const Image& image, ExrPrecision precisi
   spec.channelnames = image.channels;
   spec.attribute("compression", "zip");
   set_metadata(spec, image);
-  if (!half) {
-    write_aside(path, "openexr", spec, OIIO::TypeFloat, image.values.data());
-    return;
+  const AsideFile file(path);
+  if (half) {
+    constexpr float kLargestHalf = 65504;
+    std::vector<float> values = image.values;
+    for (float& value : values) value = std::clamp(value, -kLargestHalf, kLargestHalf);
+    encode(file, "openexr", spec, OIIO::TypeFloat, values.data());
+  } else {
+    encode(file, "openexr", spec, OIIO::TypeFloat, image.values.data());
   }
-  constexpr float kLargestHalf = 65504;
-  std::vector<float> values = image.values;
-  for (float& value : values) value = std::clamp(value, -kLargestHalf, kLargestHalf);
-  write_aside(path, "openexr", spec, OIIO::TypeFloat, values.data());
+  file.replace_target();
 }
 
 void write_png(const std::string& path, const Image& image, double exposure) {
@@ -224,13 +247,23 @@ void write_png(const std::string& path, const Image& image, double exposure) {
     for (const int channel : colour) {
       const float value = image.values[pixel * image.channels.size() + channel] * scale;
       // The order of the arguments makes a NaN black.
-      const float encoded = srgb_from_linear(std::min(1.0F, std::max(0.0F, value)));
-      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * encoded)));
+      const float srgb = srgb_from_linear(std::min(1.0F, std::max(0.0F, value)));
+      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * srgb)));
     }
   }
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  write_aside(path, "png", spec, OIIO::TypeUInt8, bytes.data());
+  // The PNG writer doesn't notice a full disk, hence the detour.
+  const AsideFile file(path);
+  std::vector<unsigned char> encoded;
+  OIIO::Filesystem::IOVecOutput buffer(encoded);
+  encode(file, "png", spec, OIIO::TypeUInt8, bytes.data(), &buffer);
+  std::ofstream stream(file.name(), std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(encoded.data()),
+               static_cast<std::streamsize>(encoded.size()));
+  stream.close();
+  if (!stream) file.give_up(std::generic_category().message(errno));
+  file.replace_target();
 }
 
 float srgb_from_linear(float linear) {
