@@ -248,6 +248,23 @@ TEST(ImageEnvironment, IsContinuousAcrossItsSeam) {
   EXPECT_NEAR(left, right, 1e-4);
 }
 
+TEST(ImageEnvironment, TheDensityIsZeroOnlyWhereTheInterpolantIsBlack) {
+  // A black pixel shines at its edge if a neighbour does.
+  const ImageEnvironment environment(rough_image(), UpAxis::kY, "rough");
+  RandomStream random(51, 52, 53, 54);
+  int black = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const float u0 = random.uniform();
+    const LightValue value = environment.evaluate(sample_sphere(u0, random.uniform()));
+    if (value.radiance.x > 0) {
+      ASSERT_GT(value.pdf, 0);
+    } else {
+      ++black;
+    }
+  }
+  EXPECT_GT(black, 1000);
+}
+
 TEST(ImageEnvironment, NamesThePixelThatIsNoLight) {
   for (const float bad :
        {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
