@@ -1,7 +1,325 @@
+// freepath render: a volume file in, pictures out.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
 #include "apps/freepath/commands.h"
+#include "apps/freepath/parse.h"
+#include "apps/freepath/progress_bar.h"
+#include "apps/freepath/render_output.h"
+#include "freepath/base/error.h"
+#include "freepath/scene/volume_scene.h"
 
 namespace freepath::program {
+namespace {
 
-void add_render_command(CLI::App&) {}
+constexpr const char* kFooter =
+    R"(Renders the density of a volume file (.vdb, .nvdb), without bias and without a limit to the
+number of scatterings. Several -o write the same picture several times; an .exr holds all channels,
+a .png the colour. Ctrl-C ends after the batches at work and still writes.
+
+A density of 1 has an extinction of 1 per world unit, times --density-scale.
+Methods take options after their name: weighted-delta:rate-scale=0.7
+
+Examples:
+  freepath render cloud.vdb -o cloud.exr -o cloud.png
+  freepath render cloud.vdb -o cloud.png --spp 256 --size 960x540 --albedo 0.999 --g 0.8
+  freepath render smoke.vdb -o smoke.exr --environment sky.hdr --sun none --time 60
+  freepath render haze.nvdb -o haze.exr --sigma-s 4,1,0.25 --sigma-a 0.02,0.2,1 --sun 20,120
+  freepath render cloud.vdb -o furnace.exr --albedo 1 --environment 1 --stats stats.json
+  freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio)";
+
+constexpr std::array kInterpolations{Choice<Interpolation>{"nearest", Interpolation::kNearest},
+                                     Choice<Interpolation>{"trilinear", Interpolation::kTrilinear},
+                                     Choice<Interpolation>{"stochastic",
+                                                           Interpolation::kStochastic}};
+constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
+                                  Choice<Absorption>{"weighted", Absorption::kWeighted}};
+constexpr std::array kUpAxes{Choice<UpAxis>{"y", UpAxis::kY}, Choice<UpAxis>{"z", UpAxis::kZ}};
+constexpr std::array kNegatives{Choice<NegativePolicy>{"error", NegativePolicy::kError},
+                                Choice<NegativePolicy>{"clamp", NegativePolicy::kClamp}};
+
+/// The options as they were typed; read_* turn them into what the library takes.
+struct Options {
+  std::string volume, grid, stats;
+  std::vector<std::string> outputs;
+  uint32_t samples = 0;
+  double time_limit = 0;
+  std::string size = "640x360";
+  uint64_t seed = 0;
+  int threads = 0;
+  std::size_t batch = RenderSettings{}.batch;
+  uint32_t max_scatterings = 0;
+  double density_scale = 1;
+  std::string albedo, sigma_a, sigma_s, radiance;
+  double g = 0;
+  std::string environment, sun;
+  double turbidity = SunParameters{}.turbidity;
+  std::string tracker = "delta", transmittance = "ratio", interpolation = "stochastic";
+  std::string absorption = "weighted";
+  std::vector<std::string> emission;
+  std::string simd = "best";
+  int super_voxel = 0;
+  std::string up = "y", look_at;
+  double fov = CameraOptions{}.fov;
+  double exposure = 0;
+  std::string negative = "error";
+};
+
+OpticalProperties read_optics(const Options& options) {
+  OpticalProperties optics;
+  optics.density_scale = static_cast<float>(options.density_scale);
+  optics.g = static_cast<float>(options.g);
+  if (!options.albedo.empty()) {
+    if (!options.sigma_a.empty() || !options.sigma_s.empty()) {
+      fail("--albedo and --sigma-a or --sigma-s say the same thing twice; give one or the other");
+    }
+    optics.albedo = parse_spectrum(options.albedo, "--albedo");
+  }
+  if (!options.sigma_a.empty()) optics.sigma_a = parse_spectrum(options.sigma_a, "--sigma-a");
+  if (!options.sigma_s.empty()) optics.sigma_s = parse_spectrum(options.sigma_s, "--sigma-s");
+  if (!options.radiance.empty()) optics.emission = parse_spectrum(options.radiance, "--le");
+  for (const std::string& value : options.emission) {
+    if (looks_numeric(value)) optics.emission = parse_spectrum(value, "--emission");
+  }
+  return optics;
+}
+
+LightOptions read_lights(const Options& options) {
+  LightOptions lights;
+  const bool default_lights = options.environment.empty() || options.environment == "sky";
+  if (looks_numeric(options.environment)) {
+    lights.environment = parse_spectrum(options.environment, "--environment");
+  } else if (!default_lights) {
+    lights.environment = options.environment;
+  }
+  lights.sun = options.sun.empty() ? default_lights : options.sun != "none";
+  lights.sun_parameters.turbidity = options.turbidity;
+  if (!options.sun.empty() && options.sun != "none") {
+    const std::vector<double> angles = parse_numbers(options.sun, "--sun");
+    if (angles.size() != 2) {
+      fail("--sun: '{}' is not ELEVATION,AZIMUTH in degrees, nor none", options.sun);
+    }
+    lights.sun_parameters.elevation = angles[0];
+    lights.sun_parameters.azimuth = angles[1];
+  }
+  return lights;
+}
+
+CameraOptions read_camera(const Options& options) {
+  CameraOptions camera;
+  const PictureSize size = parse_size(options.size, "--size");
+  camera.width = size.width;
+  camera.height = size.height;
+  camera.fov = options.fov;
+  if (options.look_at.empty()) return camera;
+  const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
+  if (numbers.size() != 3 && numbers.size() != 6) {
+    fail("--look-at: '{}' has {} values; give the camera's position and perhaps the point it looks "
+         "at: X,Y,Z or X,Y,Z,ATX,ATY,ATZ",
+         options.look_at, numbers.size());
+  }
+  camera.from = Vec3d(numbers[0], numbers[1], numbers[2]);
+  if (numbers.size() == 6) camera.at = Vec3d(numbers[3], numbers[4], numbers[5]);
+  return camera;
+}
+
+EmissionTally read_emission_tally(const Options& options) {
+  constexpr std::array kTallies{Choice<EmissionTally>{"collision", EmissionTally::kCollision},
+                                Choice<EmissionTally>{"analog", EmissionTally::kAnalog}};
+  EmissionTally tally = EmissionTally::kCollision;
+  for (const std::string& value : options.emission) {
+    if (!looks_numeric(value)) tally = parse_choice(value, "--emission", kTallies);
+  }
+  return tally;
+}
+
+RenderSettings read_settings(const Options& options) {
+  RenderSettings settings;
+  settings.samples = options.samples;
+  settings.time_limit = options.time_limit;
+  if (options.samples == 0 && options.time_limit == 0) settings.samples = 64;
+  settings.threads = options.threads;
+  settings.batch = options.batch;
+  if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
+  WalkSettings& walk = settings.walk;
+  walk.tracker = to_string(parse_method(options.tracker, tracker_infos()), tracker_infos());
+  walk.transmittance =
+      to_string(parse_method(options.transmittance, transmittance_infos()), transmittance_infos());
+  walk.interpolation = parse_choice(options.interpolation, "--interpolation", kInterpolations);
+  walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
+  walk.emission = read_emission_tally(options);
+  walk.simd = parse_simd(options.simd);
+  walk.seed = options.seed;
+  return settings;
+}
+
+void run(const Options& options) {
+  // All that can be wrong with the options is said before the first second of work.
+  for (const std::string& output : options.outputs) check_writable(output);
+  const RenderSettings settings = read_settings(options);
+  const OpticalProperties optics = read_optics(options);
+  const LightOptions light_options = read_lights(options);
+  const CameraOptions camera_options = read_camera(options);
+  const UpAxis up = parse_choice(options.up, "--up", kUpAxes);
+  const Lights lights = make_lights(light_options, up);
+
+  RenderReport report;
+  Stopwatch watch;
+  LoadOptions load;
+  if (!options.grid.empty()) load.selection = parse_grid_selection(options.grid);
+  load.negative = parse_choice(options.negative, "--negative", kNegatives);
+  LoadedField loaded = load_field(options.volume, load);
+  for (const std::string& warning : loaded.warnings) {
+    fmt::print(stderr, "freepath: warning: {}\n", warning);
+  }
+  report.seconds_load = watch.lap();
+  const Medium medium = make_medium(std::move(loaded.field), optics, options.super_voxel);
+  const Camera camera = make_camera(medium.world_bounds(), camera_options, up);
+  report.seconds_build = watch.lap();
+
+  const ProgressBar bar(std::size_t(camera.width()) * camera.height(), settings.time_limit);
+  const StopOnInterrupt stop;
+  const RenderResult result =
+      render(medium, camera, lights, settings, [&](const RenderProgress& progress) {
+        bar.show(progress);
+        return !stop.requested();
+      });
+  bar.finish();
+  report.seconds_render = result.seconds;
+  report.settings = settings;
+  report.threads = settings.threads;
+  report.volume = options.volume;
+  write_outputs(options.outputs, options.exposure, result, report);
+  if (!options.stats.empty()) write_statistics(options.stats, result, report);
+  print_summary(options.outputs, result, report);
+}
+
+void add_picture_options(CLI::App& command, Options& o) {
+  command.add_option("-o,--output", o.outputs, "Picture to write, .exr or .png; may be repeated")
+      ->required()
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group("Picture");
+  command.add_option("--size", o.size, "Picture size, WIDTHxHEIGHT")
+      ->capture_default_str()
+      ->group("Picture");
+  command.add_option("--spp", o.samples, "Samples per pixel [64]")
+      ->check(CLI::Range(1U, 1U << 30))
+      ->group("Picture");
+  command.add_option("--time", o.time_limit, "Seconds to render; with --spp, whichever ends first")
+      ->check(CLI::PositiveNumber)
+      ->group("Picture");
+  command.add_option("--exposure", o.exposure, "Exposure of a .png [stops]")
+      ->capture_default_str()
+      ->group("Picture");
+  command.add_option("--stats", o.stats, "Write statistics to a JSON file")->group("Picture");
+  command.add_option("--look-at", o.look_at,
+                     "Camera position, and perhaps its target: X,Y,Z[,ATX,ATY,ATZ]; by default all "
+                     "of the volume is framed")
+      ->group("Picture");
+  command.add_option("--fov", o.fov, "Vertical angle of view [degrees]")
+      ->capture_default_str()
+      ->group("Picture");
+  command.add_option("--up", o.up, "Axis that points up: y or z")
+      ->capture_default_str()
+      ->group("Picture");
+}
+
+void add_medium_options(CLI::App& command, Options& o) {
+  command.add_option("--grid", o.grid, "Grid to render, by name or number [density]")
+      ->group("Medium");
+  command.add_option("--negative", o.negative, "Negative densities: error or clamp")
+      ->capture_default_str()
+      ->group("Medium");
+  command.add_option("--density-scale", o.density_scale, "Multiplies the densities")
+      ->capture_default_str()
+      ->group("Medium");
+  command.add_option("--albedo", o.albedo, "Single-scattering albedo, V or R,G,B [0.99]")
+      ->group("Medium");
+  command.add_option("--sigma-a", o.sigma_a, "Absorption per unit of density, V or R,G,B [1/unit]")
+      ->group("Medium");
+  command.add_option("--sigma-s", o.sigma_s, "Scattering per unit of density, V or R,G,B [1/unit]")
+      ->group("Medium");
+  command.add_option("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function")
+      ->capture_default_str()
+      ->group("Medium");
+  command.add_option("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e")
+      ->group("Medium");
+}
+
+void add_light_options(CLI::App& command, Options& o) {
+  command.add_option("--environment", o.environment,
+                     "sky, a radiance V or R,G,B, or a latitude-longitude image (.hdr, .exr) [sky]")
+      ->group("Light");
+  command.add_option("--sun", o.sun,
+                     "ELEVATION,AZIMUTH of the sun's disc [degrees, azimuth clockwise from north], "
+                     "or none [40,250 under a sky, else none]")
+      ->group("Light");
+  command.add_option("--turbidity", o.turbidity, "Haze of sky and sun, 2 to 10")
+      ->capture_default_str()
+      ->group("Light");
+}
+
+void add_method_options(CLI::App& command, Options& o) {
+  const auto names = [](std::span<const MethodInfo> infos) {
+    std::string list;
+    for (const MethodInfo& info : infos) list += (list.empty() ? "" : ", ") + std::string(info.name);
+    return list;
+  };
+  command.add_option("--tracker", o.tracker, "Free-path sampling: " + names(tracker_infos()))
+      ->capture_default_str()
+      ->group("Method");
+  command.add_option("--transmittance", o.transmittance,
+                     "Transmittance of shadow rays: " + names(transmittance_infos()))
+      ->capture_default_str()
+      ->group("Method");
+  command.add_option("--interpolation", o.interpolation, "nearest, trilinear or stochastic")
+      ->capture_default_str()
+      ->group("Method");
+  command.add_option("--absorption", o.absorption, "analog or weighted")
+      ->capture_default_str()
+      ->group("Method");
+  command.add_option("--emission", o.emission,
+                     "collision or analog [collision]; a number or R,G,B is taken as --le")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group("Method");
+  command.add_option("--super-voxel", o.super_voxel,
+                     "Edge of a super-voxel [voxels]: 4, 8, 16, 32, 64, or 0 for automatic")
+      ->capture_default_str()
+      ->group("Method");
+  command.add_option("--max-scatterings", o.max_scatterings, "Ends paths; biased [no limit]")
+      ->check(CLI::PositiveNumber)
+      ->group("Method");
+}
+
+void add_run_options(CLI::App& command, Options& o) {
+  command.add_option("--seed", o.seed, "Seed of the random numbers")->capture_default_str();
+  command.add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
+  command.add_option("--batch", o.batch, "Paths in flight per thread; changes no result")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 20));
+  command.add_option("--simd", o.simd, "best, avx512, avx2, sse4 or one-lane")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("render", "Render a volume file to pictures");
+  command->footer(kFooter);
+  const auto options = std::make_shared<Options>();
+  command->add_option("volume", options->volume, "Volume file, .vdb or .nvdb")->required();
+  add_picture_options(*command, *options);
+  add_medium_options(*command, *options);
+  add_light_options(*command, *options);
+  add_method_options(*command, *options);
+  add_run_options(*command, *options);
+  command->callback([options] { run(*options); });
+}
 
 }  // namespace freepath::program

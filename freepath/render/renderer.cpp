@@ -63,9 +63,10 @@ class PassRenderer {
 
   void run() {
     const bool timed = settings_.time_limit > 0;
+    const uint32_t wanted = settings_.samples > 0 ? settings_.samples : UINT32_MAX;
     uint32_t samples = 1;
-    while (!stop_ && (timed || samples_done_ < settings_.samples)) {
-      if (!timed) samples = std::min(samples, settings_.samples - samples_done_);
+    while (!stop_ && samples_done_ < wanted) {
+      samples = std::min(samples, wanted - samples_done_);
       const double before = seconds_since(start_);
       pass(samples);
       const double now = seconds_since(start_);
@@ -131,8 +132,7 @@ class PassRenderer {
     const double now = seconds_since(start_);
     if (!last && now - reported_ < kSecondsBetweenReports) return;
     reported_ = now;
-    const double total = settings_.time_limit > 0 ? 0 : settings_.samples;
-    if (!progress_({paths_done_, total, now})) stop_ = true;
+    if (!progress_({paths_done_, double(settings_.samples), now})) stop_ = true;
   }
 
   const PathSetup& setup_;
@@ -153,13 +153,15 @@ class PassRenderer {
 
 RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
                     const RenderSettings& settings, const ProgressFunction& progress) {
+  if (settings.samples == 0 && settings.time_limit <= 0) {
+    fail("nothing to render: neither samples nor a time limit is given");
+  }
   RenderResult result{Film(camera.width(), camera.height()), {}};
   const PathSetup setup = make_setup(medium, camera, lights, settings);
   PassRenderer passes(setup, settings, progress, result.film);
   passes.run();
   result.samples = passes.samples_done();
-  result.interrupted = passes.stopped() && (settings.time_limit > 0 ||
-                                            result.samples < settings.samples);
+  result.interrupted = passes.stopped() && result.samples != settings.samples;
   result.seconds = passes.seconds();
   result.paths = passes.paths();
   result.statistics = passes.statistics();

@@ -10,7 +10,7 @@ namespace freepath {
 
 /// How much to render, and with what.
 struct RenderSettings {
-  uint32_t samples = 64;      ///< Of each pixel; ignored where time_limit is set.
+  uint32_t samples = 64;      ///< Of each pixel; 0: as many as the time allows.
   double time_limit = 0;      ///< [s] 0: none. No pass begins once it is reached.
   int threads = 0;            ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;

@@ -1,0 +1,77 @@
+#include "apps/freepath/parse.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "freepath/base/error.h"
+
+namespace freepath::program {
+namespace {
+
+template <class Number>
+bool read_number(std::string_view text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+std::vector<double> parse_numbers(std::string_view text, std::string_view option) {
+  std::vector<double> numbers;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    const std::string_view item = text.substr(0, comma);
+    double value = 0;
+    if (!read_number(item, value) || !std::isfinite(value)) {
+      fail("{}: '{}' is not a number", option, item);
+    }
+    numbers.push_back(value);
+    if (comma == std::string_view::npos) return numbers;
+    text = text.substr(comma + 1);
+  }
+}
+
+Spectrum parse_spectrum(std::string_view text, std::string_view option) {
+  const std::vector<double> numbers = parse_numbers(text, option);
+  if (numbers.size() == 1) return Spectrum(static_cast<float>(numbers[0]));
+  if (numbers.size() != 3) {
+    fail("{}: '{}' has {} values; give one for all channels, or three: R,G,B", option, text,
+         numbers.size());
+  }
+  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]),
+          static_cast<float>(numbers[2])};
+}
+
+bool looks_numeric(std::string_view text) {
+  const std::size_t first = text.find_first_not_of("+-.");
+  if (first == std::string_view::npos || first > 2) return false;
+  const std::string_view item = text.substr(0, text.find(','));
+  double value = 0;
+  return read_number(item, value);
+}
+
+PictureSize parse_size(std::string_view text, std::string_view option) {
+  constexpr int kLargest = 32768;
+  PictureSize size;
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos || !read_number(text.substr(0, cross), size.width) ||
+      !read_number(text.substr(cross + 1), size.height)) {
+    fail("{}: '{}' is not a size; write WIDTHxHEIGHT, as in 640x360", option, text);
+  }
+  if (size.width < 1 || size.height < 1 || size.width > kLargest || size.height > kLargest) {
+    fail("{}: {} is outside 1x1 to {}x{}", option, text, kLargest, kLargest);
+  }
+  return size;
+}
+
+void fail_choice(std::string_view text, std::string_view option,
+                 const std::vector<std::string_view>& names) {
+  std::string list;
+  for (const std::string_view name : names) {
+    if (!list.empty()) list += ", ";
+    list += name;
+  }
+  fail("{}: '{}' is not one of: {}", option, text, list);
+}
+
+}  // namespace freepath::program

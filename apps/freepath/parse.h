@@ -1,0 +1,52 @@
+#pragma once
+/// @file Values of options: numbers, lists, sizes, choices. Each error names the option.
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "freepath/base/spectrum.h"
+
+namespace freepath::program {
+
+/// "1,2.5,3" as numbers. @throws Error naming the option, for what is not a finite number
+std::vector<double> parse_numbers(std::string_view text, std::string_view option);
+
+/// One value for all channels, or three. @throws Error for another count or not a number
+Spectrum parse_spectrum(std::string_view text, std::string_view option);
+
+/// Whether a text begins like a number, to tell a spectrum from a name or a file.
+bool looks_numeric(std::string_view text);
+
+struct PictureSize {
+  int width = 0;
+  int height = 0;
+};
+
+/// "640x360". @throws Error for another form, or sizes outside 1 to 32768
+PictureSize parse_size(std::string_view text, std::string_view option);
+
+/// A name among those given with their values.
+/// @throws Error listing the names
+template <class Value>
+struct Choice {
+  std::string_view name;
+  Value value;
+};
+
+[[noreturn]] void fail_choice(std::string_view text, std::string_view option,
+                              const std::vector<std::string_view>& names);
+
+template <class Value, std::size_t N>
+Value parse_choice(std::string_view text, std::string_view option,
+                   const std::array<Choice<Value>, N>& choices) {
+  std::vector<std::string_view> names;
+  for (const Choice<Value>& choice : choices) {
+    if (choice.name == text) return choice.value;
+    names.push_back(choice.name);
+  }
+  fail_choice(text, option, names);
+}
+
+}  // namespace freepath::program

@@ -1,0 +1,71 @@
+#include "apps/freepath/progress_bar.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+namespace freepath::program {
+namespace {
+
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_interrupt(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::size_t pixels, double time_limit)
+    : pixels_(static_cast<double>(pixels)),
+      time_limit_(time_limit),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void ProgressBar::show(const RenderProgress& progress) const {
+  if (!terminal_ || progress.seconds <= 0) return;
+  double done = progress.samples_total > 0 ? progress.samples_done / progress.samples_total : 0;
+  if (time_limit_ > 0) done = std::max(done, progress.seconds / time_limit_);
+  done = std::clamp(done, 0.0, 1.0);
+  constexpr int kWidth = 30;
+  const int filled = static_cast<int>(done * kWidth);
+  const double left = done > 0 ? progress.seconds * (1 - done) / done : 0;
+  const std::string samples =
+      progress.samples_total > 0
+          ? fmt::format("{:.0f}/{:.0f}", progress.samples_done, progress.samples_total)
+          : fmt::format("{:.0f}", progress.samples_done);
+  fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f} %  {} samples  {:.2f} M samples/s  {} left \x1b[K",
+             "", filled, "", kWidth - filled, 100 * done, samples,
+             1e-6 * progress.samples_done * pixels_ / progress.seconds, clock_text(left));
+  std::fflush(stderr);
+}
+
+void ProgressBar::finish() const {
+  if (terminal_) fmt::print(stderr, "\r\x1b[K");
+}
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<int64_t>(seconds + 0.5);
+  const int64_t hours = whole / 3600;
+  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, whole / 60 % 60, whole % 60);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+StopOnInterrupt::StopOnInterrupt() {
+  interrupted = false;
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+StopOnInterrupt::~StopOnInterrupt() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+bool StopOnInterrupt::requested() const { return interrupted; }
+
+}  // namespace freepath::program

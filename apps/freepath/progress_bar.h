@@ -1,0 +1,41 @@
+#pragma once
+/// @file A progress bar on standard error, and the wish to stop.
+
+#include <string>
+
+#include "freepath/render/renderer.h"
+
+namespace freepath::program {
+
+/// Draws how far a rendering is, with its rate and the time left, where standard error is a
+/// terminal; prints nothing otherwise.
+class ProgressBar {
+ public:
+  /// @param pixels of the picture, for the rate
+  /// @param time_limit [s] 0: none
+  ProgressBar(std::size_t pixels, double time_limit);
+  void show(const RenderProgress& progress) const;
+  /// Clears the line.
+  void finish() const;
+
+ private:
+  double pixels_;
+  double time_limit_;
+  bool terminal_;
+};
+
+/// "1:02:03", "2:03" or "0:03" for seconds.
+std::string clock_text(double seconds);
+
+/// While one of these lives, the first Ctrl-C is taken as a wish to stop; a second one ends the
+/// program as usual.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt();
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+  bool requested() const;
+};
+
+}  // namespace freepath::program

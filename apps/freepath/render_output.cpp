@@ -1,0 +1,150 @@
+#include "apps/freepath/render_output.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/info.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "apps/freepath/progress_bar.h"
+#include "freepath/base/error.h"
+#include "freepath/base/version.h"
+#include "freepath/io/image.h"
+
+namespace freepath::program {
+namespace {
+
+std::string now_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+int64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return int64_t{usage.ru_maxrss} * 1024;
+}
+
+int thread_count(const RenderReport& report) {
+  return report.threads > 0 ? report.threads : tbb::info::default_concurrency();
+}
+
+void add_metadata(Image& image, const RenderResult& result, const RenderReport& report) {
+  const WalkSettings& walk = report.settings.walk;
+  const WalkStatistics& counts = result.statistics;
+  const auto integer = [](uint64_t value) { return static_cast<int64_t>(value); };
+  image.metadata = {
+      {"Software", fmt::format("freepath {}", version())},
+      {"DateTime", now_text()},
+      {"freepath:version", std::string(version())},
+      {"freepath:volume", std::filesystem::path(report.volume).filename().string()},
+      {"freepath:seed", integer(walk.seed)},
+      {"freepath:samples", integer(result.samples)},
+      {"freepath:tracker", walk.tracker},
+      {"freepath:transmittance", walk.transmittance},
+      {"freepath:seconds", result.seconds},
+      {"freepath:paths", integer(result.paths)},
+      {"freepath:tentative_collisions", integer(counts.tentative_collisions)},
+      {"freepath:null_collisions", integer(counts.null_collisions)},
+      {"freepath:real_collisions", integer(counts.real_collisions)},
+      {"freepath:lookups", integer(counts.lookups)},
+      {"freepath:super_voxel_steps", integer(counts.super_voxel_steps)},
+      {"freepath:bound_violations", integer(counts.bound_violations)},
+      {"freepath:negative_weights", integer(counts.negative_weights)},
+      {"freepath:largest_weight", static_cast<double>(counts.largest_weight)},
+  };
+}
+
+nlohmann::json statistics_json(const RenderResult& result, const RenderReport& report) {
+  const WalkStatistics& counts = result.statistics;
+  return {{"paths", result.paths},
+          {"samples", result.samples},
+          {"tentative_collisions", counts.tentative_collisions},
+          {"null_collisions", counts.null_collisions},
+          {"real_collisions", counts.real_collisions},
+          {"control_collisions", counts.control_collisions},
+          {"lookups", counts.lookups},
+          {"super_voxel_steps", counts.super_voxel_steps},
+          {"bound_violations", counts.bound_violations},
+          {"negative_weights", counts.negative_weights},
+          {"largest_weight", counts.largest_weight},
+          {"seconds",
+           {{"load", report.seconds_load},
+            {"build", report.seconds_build},
+            {"render", report.seconds_render}}},
+          {"peak_memory_bytes", peak_memory_bytes()},
+          {"tracker", report.settings.walk.tracker},
+          {"transmittance", report.settings.walk.transmittance},
+          {"seed", report.settings.walk.seed},
+          {"threads", thread_count(report)},
+          {"simd", to_string(report.settings.walk.simd)},
+          {"version", version()}};
+}
+
+}  // namespace
+
+void write_outputs(const std::vector<std::string>& files, double exposure,
+                   const RenderResult& result, const RenderReport& report) {
+  Image image = result.film.to_image();
+  add_metadata(image, result, report);
+  for (const std::string& file : files) {
+    if (image_format(file) == ImageFormat::kPng) {
+      write_png(file, image, exposure);
+    } else {
+      write_exr(file, image);
+    }
+  }
+}
+
+void write_statistics(const std::string& file, const RenderResult& result,
+                      const RenderReport& report) {
+  const std::string aside = fmt::format("{}.{}.tmp", file, getpid());
+  {
+    std::ofstream stream(aside);
+    stream << statistics_json(result, report).dump(2) << '\n';
+    if (!stream.flush()) {
+      std::error_code ignored;
+      std::filesystem::remove(aside, ignored);
+      fail("can't write {}", file);
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(aside, file, error);
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(aside, ignored);
+    fail("can't write {}: {}", file, error.message());
+  }
+}
+
+void print_summary(const std::vector<std::string>& files, const RenderResult& result,
+                   const RenderReport& report) {
+  const WalkStatistics& counts = result.statistics;
+  const double paths = static_cast<double>(std::max<uint64_t>(result.paths, 1));
+  if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", result.samples);
+  fmt::print(stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
+             result.samples,
+             clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
+             report.seconds_load, report.seconds_build, report.seconds_render);
+  fmt::print(stderr,
+             "{}: {} paths, a path {:.2f} lookups, {:.2f} real and {:.2f} null collisions, {:.2f} "
+             "super-voxel steps; largest weight {:.4g}, {} negative weights, {} bound violations\n",
+             report.settings.walk.tracker, result.paths, static_cast<double>(counts.lookups) / paths,
+             static_cast<double>(counts.real_collisions) / paths,
+             static_cast<double>(counts.null_collisions) / paths,
+             static_cast<double>(counts.super_voxel_steps) / paths, counts.largest_weight,
+             counts.negative_weights, counts.bound_violations);
+  for (const std::string& file : files) fmt::print(stderr, "wrote {}\n", file);
+}
+
+}  // namespace freepath::program

@@ -1,0 +1,48 @@
+#pragma once
+/// @file What a rendering leaves behind: pictures with metadata, statistics, a summary.
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "freepath/render/renderer.h"
+
+namespace freepath::program {
+
+/// Seconds since it was made or asked last.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// What there is to tell besides the result.
+struct RenderReport {
+  double seconds_load = 0, seconds_build = 0, seconds_render = 0;
+  std::string volume;
+  RenderSettings settings;
+  int threads = 0;  ///< 0: all
+};
+
+/// Writes the picture under each name, .exr with metadata.
+/// @throws Error as the image writers
+void write_outputs(const std::vector<std::string>& files, double exposure,
+                   const RenderResult& result, const RenderReport& report);
+
+/// Writes the statistics as one JSON object, aside and then renamed.
+/// @throws Error that names the file
+void write_statistics(const std::string& file, const RenderResult& result,
+                      const RenderReport& report);
+
+/// Tells on standard error what was done.
+void print_summary(const std::vector<std::string>& files, const RenderResult& result,
+                   const RenderReport& report);
+
+}  // namespace freepath::program
