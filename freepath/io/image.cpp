@@ -110,7 +110,8 @@ class AsideFile {
 
 /// Writes with OpenImageIO: into the file aside, or into a buffer if there is one.
 void encode(const AsideFile& file, const char* format, const OIIO::ImageSpec& spec,
-            OIIO::TypeDesc type, const void* pixels, OIIO::Filesystem::IOProxy* buffer = nullptr) {
+            const OIIO::TypeDesc& type, const void* pixels,
+            OIIO::Filesystem::IOProxy* buffer = nullptr) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) file.give_up(OIIO::geterror());
   if (buffer != nullptr && !output->set_ioproxy(buffer)) file.give_up(output->geterror());
