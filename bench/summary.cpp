@@ -8,9 +8,6 @@
 namespace freepath::bench {
 namespace {
 
-/// Standard errors; with some tens of comparisons one chance in ten thousand.
-constexpr double kLargestDifference = 4.5;
-
 struct Mean {
   double value;
   double variance;  ///< Of the mean.
@@ -21,12 +18,16 @@ Mean mean(double sum, double sum_squared, double count) {
   return {value, (sum_squared / count - value * value) / (count - 1)};
 }
 
-bool agree(const Table& table, std::size_t row, const char* what, const Mean& a, const Mean& b) {
-  const double error = std::sqrt(a.variance + b.variance);
-  if (std::abs(a.value - b.value) <= kLargestDifference * error) return true;
-  fmt::print(stderr, "{}: '{}' and '{}' differ: {} {:.5g} and {:.5g}, standard error {:.2g}\n",
-             table.title, table.rows[0], table.rows[row], what, a.value, b.value, error);
-  return false;
+Mean mean_collisions(const Tally& tally) {
+  return mean(tally.collisions, tally.collisions_squared, tally.rays);
+}
+
+Mean mean_weight(const Tally& tally) {
+  return mean(tally.weight, tally.weight_squared, tally.rays);
+}
+
+bool agree(const Mean& a, const Mean& b) {
+  return std::abs(a.value - b.value) <= kLargestDifference * std::sqrt(a.variance + b.variance);
 }
 
 }  // namespace
@@ -54,30 +55,26 @@ double KeepingReporter::median(const std::string& name) const {
   return times.size() % 2 == 1 ? times[middle] : (times[middle - 1] + times[middle]) / 2;
 }
 
-void print(const Table& table, const KeepingReporter& reporter) {
-  const double first = reporter.median(table.benchmarks[0]);
-  fmt::print("\n{}\n{:44} {:>10} {:>8} {:>12} {:>8}\n", table.title, "", "ns", "ratio", "collisions",
-             "weight");
+bool report(const Table& table, const KeepingReporter& reporter) {
+  double first_time = 0;
+  Tally first;
+  bool same = true;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const double time = reporter.median(table.benchmarks[row]);
     if (time == 0) continue;
-    const Tally& tally = table.tallies[row];
-    fmt::print("{:44} {:10.2f} {:7.1f}x {:12.2f} {:8.4f}\n", table.rows[row], time, first / time,
-               tally.collisions / tally.rays, tally.weight / tally.rays);
-  }
-}
-
-bool same_problem(const Table& table) {
-  const Tally& first = table.tallies[0];
-  bool same = true;
-  for (std::size_t row = 1; row < table.rows.size(); ++row) {
-    const Tally& other = table.tallies[row];
-    same &= agree(table, row, "collisions a ray",
-                  mean(first.collisions, first.collisions_squared, first.rays),
-                  mean(other.collisions, other.collisions_squared, other.rays));
-    same &= agree(table, row, "mean weight",
-                  mean(first.weight, first.weight_squared, first.rays),
-                  mean(other.weight, other.weight_squared, other.rays));
+    const Tally tally = table.tallies[row]();
+    if (first_time == 0) {
+      first_time = time;
+      first = tally;
+      fmt::print("\n{}\n{:32} {:>13} {:>8} {:>15} {:>12}\n", table.title, "", "ns/collision",
+                 "ratio", "collisions/ray", "mean weight");
+    }
+    const bool agrees = agree(mean_collisions(first), mean_collisions(tally)) &&
+                        agree(mean_weight(first), mean_weight(tally));
+    fmt::print("{:32} {:13.2f} {:7.1f}x {:15.3f} {:12.4f}{}\n", table.rows[row], time,
+               first_time / time, mean_collisions(tally).value, mean_weight(tally).value,
+               agrees ? "" : "  differs from the first row");
+    same &= agrees;
   }
   return same;
 }

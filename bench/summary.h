@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,17 +31,18 @@ class KeepingReporter : public benchmark::ConsoleReporter {
 /// Rows that are compared with the first of them.
 struct Table {
   std::string title;
-  std::vector<std::string> rows;        ///< Titles of the rows.
-  std::vector<std::string> benchmarks;  ///< Name of each row's benchmark.
-  std::vector<Tally> tallies;           ///< What each did, in a run of its own.
+  std::vector<std::string> rows;                 ///< Titles of the rows.
+  std::vector<std::string> benchmarks;           ///< Name of each row's benchmark.
+  std::vector<std::function<Tally()>> tallies;   ///< What each does, walked once more.
 };
 
-/// Prints the table, for those rows that ran.
-void print(const Table& table, const KeepingReporter& reporter);
+/// Prints the rows that ran, and tests that they have the same mean number of collisions and the
+/// same mean weight as the first of them, naming those that have not.
+/// @return whether all agree within kLargestDifference standard errors
+bool report(const Table& table, const KeepingReporter& reporter);
 
-/// Tests that all rows have the same mean number of collisions and the same mean weight as the
-/// first, and names those that have not.
-/// @return whether they agree within kLargestDifference standard errors
-bool same_problem(const Table& table);
+/// Standard errors that means may differ by; with a hundred comparisons less than one chance in a
+/// thousand.
+inline constexpr double kLargestDifference = 4.5;
 
 }  // namespace freepath::bench

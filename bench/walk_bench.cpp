@@ -161,9 +161,11 @@ Table make_table(const Problem& problem, Estimate estimate) {
                                    time_variant(state, *variant, problem.rays);
                                  })
         ->Unit(benchmark::kMillisecond);
-    Tally tally;
-    for (const RayStream& stream : problem.rays) tally.merge(row.variant->tally(stream));
-    table.tallies.push_back(tally);
+    table.tallies.push_back([variant = row.variant, &problem] {
+      Tally tally;
+      for (const RayStream& stream : problem.rays) tally.merge(variant->tally(stream));
+      return tally;
+    });
   }
   return table;
 }
@@ -191,19 +193,17 @@ int run(int argc, char** argv) {
 
   const Problem problems[] = {Problem(128), Problem(512)};
   std::vector<Table> tables;
-  bool same = true;
   for (const Problem& problem : problems) {
     describe(problem);
     for (const Estimate estimate : {Estimate::kFreePath, Estimate::kTransmittance}) {
       tables.push_back(make_table(problem, estimate));
-      same &= same_problem(tables.back());
     }
   }
-  if (!same) return 1;
   KeepingReporter reporter(benchmark::ConsoleReporter::OO_None);
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  for (const Table& table : tables) print(table, reporter);
-  return 0;
+  bool same = true;
+  for (const Table& table : tables) same &= report(table, reporter);
+  return same ? 0 : 1;
 }
 
 }  // namespace
