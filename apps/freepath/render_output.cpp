@@ -78,6 +78,7 @@ nlohmann::json statistics_json(const RenderResult& result, const RenderReport& r
           {"bound_violations", counts.bound_violations},
           {"negative_weights", counts.negative_weights},
           {"largest_weight", counts.largest_weight},
+          {"overflows", result.overflows},
           {"seconds",
            {{"load", report.seconds_load},
             {"build", report.seconds_build},
@@ -144,6 +145,12 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
              static_cast<double>(counts.null_collisions) / paths,
              static_cast<double>(counts.super_voxel_steps) / paths, counts.largest_weight,
              counts.negative_weights, counts.bound_violations);
+  if (result.overflows > 0) {
+    fmt::print(stderr,
+               "freepath: warning: the weights of {} paths left the range of float and count as 0; "
+               "do not trust this picture, take a larger rate-scale or another tracker\n",
+               result.overflows);
+  }
   for (const std::string& file : files) fmt::print(stderr, "wrote {}\n", file);
 }
 

@@ -8,6 +8,9 @@
 namespace freepath {
 namespace {
 
+/// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
+constexpr float kLargestThroughput = 1e28F;
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Spectrum albedo_of(const Component& component) {
@@ -19,8 +22,10 @@ Spectrum albedo_of(const Component& component) {
   return albedo;
 }
 
+/// NaN if a channel is.
 float largest_magnitude(const Spectrum& s) {
-  return std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)});
+  const float largest = std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)});
+  return std::isnan(s.x + s.y + s.z) ? std::numeric_limits<float>::quiet_NaN() : largest;
 }
 
 void set_ray(RayStream& rays, std::size_t slot, const Vec3f& origin, const Vec3f& direction) {
@@ -149,6 +154,10 @@ bool PathWavefront::advance(std::size_t slot) {
   }
   if (path.bounce == 0) record_first_event(path, slot);
   path.throughput *= flight_values(flights_.weight, slot);
+  if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
+    path.radiance = Spectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
+    return false;
+  }
   switch (flights_.event[slot]) {
     case Event::kEscape:
       escape(path, {rays_.direction[0][slot], rays_.direction[1][slot], rays_.direction[2][slot]});
@@ -235,6 +244,11 @@ void PathWavefront::record_first_event(Path& path, std::size_t slot) const {
 void PathWavefront::finish(const Path& path, int channel) {
   PathSample& sample = results_[path.result];
   sample.lookups += static_cast<float>(path.lookups);
+  if (!is_finite(path.radiance) || !std::isfinite(path.alpha) ||
+      !std::isfinite(path.depth_weight)) {
+    ++overflows_;
+    return;
+  }
   sample.radiance += path.radiance;
   if (channel < 0) {
     sample.alpha = path.alpha;

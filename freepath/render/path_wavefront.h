@@ -51,6 +51,9 @@ class PathWavefront {
 
   const WalkStatistics& statistics() const { return statistics_; }
   uint64_t paths() const { return paths_; }
+  /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
+  /// not to be trusted. Only rates that are no bound can do that.
+  uint64_t overflows() const { return overflows_; }
 
  private:
   /// A path in flight. Its ray stands in the same slot of rays_.
@@ -100,6 +103,7 @@ class PathWavefront {
   const Walker* walker_ = nullptr;  // of the channel at work
   WalkStatistics statistics_;
   uint64_t paths_ = 0;
+  uint64_t overflows_ = 0;
 };
 
 }  // namespace freepath

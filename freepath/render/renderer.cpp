@@ -2,6 +2,8 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -57,6 +59,8 @@ class PassRenderer {
         settings_(settings),
         progress_(progress),
         film_(film),
+        more_threads_(tbb::global_control::max_allowed_parallelism,
+                      std::max(settings.threads, tbb::info::default_concurrency())),
         arena_(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic),
         wavefronts_([this] { return PathWavefront(setup_); }),
         start_(Clock::now()) {}
@@ -81,11 +85,8 @@ class PassRenderer {
   uint32_t samples_done() const { return samples_done_; }
   bool stopped() const { return stop_; }
   double seconds() const { return seconds_since(start_); }
-  uint64_t paths() {
-    uint64_t sum = 0;
-    for (const PathWavefront& wavefront : wavefronts_) sum += wavefront.paths();
-    return sum;
-  }
+  uint64_t paths() { return sum_of(&PathWavefront::paths); }
+  uint64_t overflows() { return sum_of(&PathWavefront::overflows); }
   WalkStatistics statistics() {
     WalkStatistics sum;
     for (const PathWavefront& wavefront : wavefronts_) sum.merge(wavefront.statistics());
@@ -93,6 +94,12 @@ class PassRenderer {
   }
 
  private:
+  uint64_t sum_of(uint64_t (PathWavefront::*count)() const) {
+    uint64_t sum = 0;
+    for (const PathWavefront& wavefront : wavefronts_) sum += (wavefront.*count)();
+    return sum;
+  }
+
   uint32_t next_pass(uint32_t samples, double seconds_per_sample, bool timed, double now) const {
     double wanted = kSecondsPerPass / std::max(seconds_per_sample, 1e-9);
     if (timed) wanted = std::min(wanted, (settings_.time_limit - now) / seconds_per_sample);
@@ -139,6 +146,7 @@ class PassRenderer {
   const RenderSettings& settings_;
   const ProgressFunction& progress_;
   Film& film_;
+  tbb::global_control more_threads_;  // than the machine has, if that is wanted
   tbb::task_arena arena_;
   tbb::enumerable_thread_specific<PathWavefront> wavefronts_;
   Clock::time_point start_;
@@ -164,6 +172,7 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   result.interrupted = passes.stopped() && result.samples != settings.samples;
   result.seconds = passes.seconds();
   result.paths = passes.paths();
+  result.overflows = passes.overflows();
   result.statistics = passes.statistics();
   const Film::NonFinite non_finite = result.film.non_finite_samples();
   if (non_finite.samples > 0) {

@@ -31,6 +31,8 @@ struct RenderResult {
   WalkStatistics statistics;
   uint64_t paths = 0;
   uint32_t samples = 0;  ///< Of each pixel; where interrupted, of the pixel with the fewest.
+  /// Paths whose weight left the range of float; with any, the picture is not to be trusted.
+  uint64_t overflows = 0;
   double seconds = 0;
   bool interrupted = false;
 };

@@ -1,0 +1,258 @@
+// The renderer against furnaces and closed forms, and the independence of its pictures.
+
+#include "freepath/render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/statistics.h"
+#include "tests/transport/media_for_tests.h"
+
+namespace freepath::testing {
+namespace {
+
+/// A lumpy cloud of 24³ voxels with holes and tiles, turned and stretched in the world.
+std::shared_ptr<Field> lumpy_field() {
+  Matrix4d index_to_world;
+  index_to_world.setScale(Vec3d(0.1, 0.07, 0.12));
+  index_to_world *= Matrix4d().rotate(Vec3d(0.3, 0.5, 0.2));
+  return make_field(Vec3i(-12), Vec3i(11), [](const Vec3i& p) {
+    const Vec3i brick(p.x >> 3, p.y >> 3, p.z >> 3);
+    const float lump = hash_noise(brick);
+    if (lump < 0.3F) return 0.0F;
+    if (lump < 0.4F) return 0.5F;
+    return hash_noise(p) * lump;
+  }, index_to_world);
+}
+
+Component cloud(Spectrum sigma_a, Spectrum sigma_s, float g) {
+  Component component;
+  component.density = lumpy_field();
+  component.sigma_a = sigma_a;
+  component.sigma_s = sigma_s;
+  component.g = g;
+  return component;
+}
+
+Camera camera_for(const Medium& medium, int width, int height) {
+  return {frame_box(medium.world_bounds(), UpAxis::kY, 30, double(width) / height), width, height};
+}
+
+Lights constant_light(float radiance) { return Lights(ConstantEnvironment(Spectrum(radiance))); }
+
+RenderSettings settings_of(uint32_t samples, const char* tracker = "delta") {
+  RenderSettings settings;
+  settings.samples = samples;
+  settings.walk.tracker = tracker;
+  settings.walk.seed = 11;
+  return settings;
+}
+
+/// Mean over the picture of a colour channel with its standard error, from the variance channels.
+struct PictureMean {
+  double mean = 0;
+  double error = 0;
+};
+
+PictureMean picture_mean(const Film& film, int channel) {
+  const Image image = film.to_image();
+  const char* const names[] = {"R", "G", "B"};
+  const int value = *find_channel(image, names[channel]);
+  const int variance = *find_channel(image, std::string("variance.") + names[channel]);
+  PictureMean result;
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      result.mean += image.pixel(column, row)[value];
+      result.error += image.pixel(column, row)[variance];
+    }
+  }
+  const auto pixels = static_cast<double>(image.pixel_count());
+  result.mean /= pixels;
+  result.error = std::sqrt(result.error) / pixels;
+  return result;
+}
+
+struct FurnaceCase {
+  const char* tracker;
+  Absorption absorption;
+  EmissionTally emission;
+  Interpolation interpolation;
+};
+
+std::vector<FurnaceCase> furnace_cases() {
+  std::vector<FurnaceCase> cases;
+  for (const char* tracker : {"delta", "weighted-delta", "weighted-delta:rate-scale=1.5"}) {
+    for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
+      for (const EmissionTally emission : {EmissionTally::kCollision, EmissionTally::kAnalog}) {
+        cases.push_back({tracker, absorption, emission, Interpolation::kStochastic});
+      }
+    }
+  }
+  cases.push_back({"delta", {}, {}, Interpolation::kTrilinear});
+  cases.push_back({"delta", {}, {}, Interpolation::kNearest});
+  return cases;
+}
+
+// A closed furnace: whatever the medium does, the radiance is 1 everywhere.
+void expect_furnace(const Component& component, int samples) {
+  const Medium medium({component});
+  const Camera camera = camera_for(medium, 32, 32);
+  const auto cases = furnace_cases();
+  const double threshold = family_wise_threshold(1e-3, cases.size());
+  for (const FurnaceCase& test : cases) {
+    RenderSettings settings = settings_of(static_cast<uint32_t>(samples), test.tracker);
+    settings.walk.absorption = test.absorption;
+    settings.walk.emission = test.emission;
+    settings.walk.interpolation = test.interpolation;
+    const RenderResult result = render(medium, camera, constant_light(1), settings);
+    const PictureMean mean = picture_mean(result.film, 1);
+    EXPECT_TRUE(check_mean(test.tracker, mean.mean, mean.error, result.paths, 1.0,
+                           {.z = threshold, .absolute = 1e-5, .largest_relative_error = 1e-3}));
+    EXPECT_EQ(result.overflows, 0U);
+    EXPECT_EQ(result.statistics.bound_violations, 0U);
+  }
+}
+
+TEST(Renderer, WhiteFurnaceIsWhite) {
+  expect_furnace(cloud(Spectrum(0.0F), Spectrum(6.0F), 0.4F), 512);
+}
+
+TEST(Renderer, EmittingFurnaceIsWhite) {
+  Component component = cloud(Spectrum(3.0F), Spectrum(3.0F), -0.3F);
+  component.emission = Spectrum(1.0F);
+  expect_furnace(component, 512);
+}
+
+// One path for each channel, and an extinction that differs sixteenfold among them.
+TEST(Renderer, ChromaticFurnaceIsWhiteInEveryChannel) {
+  Component component = cloud(Spectrum(0.5F, 2, 1), Spectrum(0.5F, 2, 15), 0.2F);
+  component.emission = Spectrum(1.0F);
+  const Medium medium({component});
+  const RenderResult result =
+      render(medium, camera_for(medium, 32, 32), constant_light(1), settings_of(512));
+  for (int channel = 0; channel < 3; ++channel) {
+    const PictureMean mean = picture_mean(result.film, channel);
+    EXPECT_TRUE(check_mean("channel", mean.mean, mean.error, result.paths, 1.0,
+                           {.absolute = 1e-5, .largest_relative_error = 2e-3}));
+  }
+  EXPECT_EQ(result.paths, 3U * 512 * 32 * 32);
+}
+
+// Grey extinction under a coloured albedo: one path carries the weights of all channels.
+TEST(Renderer, ColouredAlbedoAgreesWithEachChannelAlone) {
+  const Spectrum albedo(0.95F, 0.6F, 0.2F);
+  const Medium together({cloud((Spectrum(1.0F) - albedo) * 8.0F, albedo * 8.0F, 0.3F)});
+  const Camera camera = camera_for(together, 32, 32);
+  for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
+    RenderSettings settings = settings_of(512);
+    settings.walk.absorption = absorption;
+    const RenderResult all = render(together, camera, constant_light(1), settings);
+    for (int channel = 0; channel < 3; ++channel) {
+      const float a = albedo[channel];
+      const Medium alone({cloud(Spectrum((1 - a) * 8), Spectrum(a * 8), 0.3F)});
+      settings.walk.seed = 99;
+      const RenderResult one = render(alone, camera, constant_light(1), settings);
+      const PictureMean mean = picture_mean(all.film, channel);
+      const PictureMean expected = picture_mean(one.film, 0);
+      EXPECT_TRUE(check_mean("channel", mean.mean, std::hypot(mean.error, expected.error), 0,
+                             expected.mean, {.largest_relative_error = 5e-3}));
+    }
+  }
+}
+
+// Without scattering a pixel is what the light has left: exp(-optical depth).
+TEST(Renderer, AbsorbingMediumLetsThroughItsTransmittance) {
+  const Medium medium({cloud(Spectrum(4.0F), Spectrum(0.0F), 0)});
+  const Box3d bounds = medium.world_bounds();
+  const Vec3d centre = bounds.center();
+  // A lens so long that all rays of the one pixel are alike.
+  const View view{centre + Vec3d(0.05, 0.02, 6), centre + Vec3d(0.05, 0.02, 0), Vec3d(0, 1, 0),
+                  1e-4};
+  const double tau = 4 * optical_depth(*medium.components()[0].density, view.from,
+                                       Vec3d(0, 0, -1), 12, Interpolation::kTrilinear);
+  for (const Interpolation interpolation :
+       {Interpolation::kTrilinear, Interpolation::kStochastic}) {
+    RenderSettings settings = settings_of(1 << 20);
+    settings.walk.interpolation = interpolation;
+    settings.walk.absorption = Absorption::kAnalog;
+    const RenderResult result =
+        render(medium, Camera(view, 1, 1), constant_light(2), settings);
+    const PictureMean mean = picture_mean(result.film, 0);
+    EXPECT_TRUE(check_mean("radiance", mean.mean, mean.error, result.paths, 2 * std::exp(-tau),
+                           {.absolute = 1e-5, .largest_relative_error = 0.01}));
+  }
+}
+
+TEST(Renderer, CameraInsideTheMediumSeesTheFurnaceToo) {
+  const Medium medium({cloud(Spectrum(0.0F), Spectrum(6.0F), 0)});
+  const Vec3d centre = medium.world_bounds().center();
+  const Camera camera({centre, centre + Vec3d(1, 0.2, 0.1), Vec3d(0, 1, 0), 90}, 16, 16);
+  const RenderResult result = render(medium, camera, constant_light(1), settings_of(1024));
+  const PictureMean mean = picture_mean(result.film, 2);
+  EXPECT_TRUE(check_mean("inside", mean.mean, mean.error, result.paths, 1, {.absolute = 1e-5}));
+}
+
+// The power of the furnaces: an albedo of 0.99 for 1 must fail them.
+TEST(Renderer, AFurnaceThatLosesOnePercentIsNoticed) {
+  const Medium medium({cloud(Spectrum(0.06F), Spectrum(5.94F), 0.4F)});
+  const RenderResult result =
+      render(medium, camera_for(medium, 32, 32), constant_light(1), settings_of(512));
+  const PictureMean mean = picture_mean(result.film, 1);
+  EXPECT_LT(z_score(mean.mean, mean.error, 1.0), -8);
+}
+
+std::vector<float> picture_of(const Medium& medium, const RenderSettings& settings) {
+  const Lights lights(ConstantEnvironment(Spectrum(0.3F)), Sun({.elevation = 50}, UpAxis::kY));
+  return render(medium, camera_for(medium, 40, 30), lights, settings).film.to_image().values;
+}
+
+TEST(Renderer, PictureDependsOnSeedAndSamplesAlone) {
+  const std::vector<Medium> media = [] {
+    std::vector<Medium> list;
+    list.emplace_back(std::vector{cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
+    list.emplace_back(std::vector{cloud(Spectrum(0.1F), Spectrum(4, 1, 0.25F), 0)});
+    return list;
+  }();
+  for (const Medium& medium : media) {
+    RenderSettings settings = settings_of(9);
+    settings.threads = 1;
+    const std::vector<float> reference = picture_of(medium, settings);
+    for (const int threads : {1, 2, 3}) {
+      for (const std::size_t batch : {1, 37, 2048}) {
+        settings.threads = threads;
+        settings.batch = batch;
+        EXPECT_EQ(picture_of(medium, settings), reference) << threads << " threads, batch " << batch;
+      }
+    }
+    settings.walk.seed = 12;
+    EXPECT_NE(picture_of(medium, settings), reference);
+  }
+}
+
+TEST(Renderer, Avx2AndAvx512GiveTheSameBits) {
+  const Medium medium({cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
+  std::vector<std::vector<float>> pictures;
+  for (const Simd simd : available_simd()) {
+    if (simd != Simd::kAvx2 && simd != Simd::kAvx512) continue;
+    RenderSettings settings = settings_of(9, "weighted-delta");
+    settings.walk.simd = simd;
+    pictures.push_back(picture_of(medium, settings));
+  }
+  if (pictures.size() < 2) GTEST_SKIP() << "this machine has no AVX-512";
+  EXPECT_EQ(pictures[0], pictures[1]);
+}
+
+TEST(Renderer, StopsWhenAskedTo) {
+  const Medium medium({cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
+  const RenderResult result =
+      render(medium, camera_for(medium, 64, 64), constant_light(1), settings_of(1 << 20),
+             [](const RenderProgress& progress) { return progress.samples_done < 2; });
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_LT(result.samples, 1U << 20);
+  EXPECT_GE(result.samples, 1U);
+}
+
+}  // namespace
+}  // namespace freepath::testing
