@@ -19,7 +19,8 @@ namespace {
 constexpr const char* kFooter =
     R"(Renders the density of a volume file (.vdb, .nvdb), without bias and without a limit to the
 number of scatterings. Several -o write the same picture several times; an .exr holds all channels,
-a .png the colour. Ctrl-C ends after the batches at work and still writes.
+a .png the colour. Ctrl-C ends after the batches at work, still writes, says how many samples
+there are, and exits with status 0; a second Ctrl-C ends at once.
 
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
 Methods take options after their name: weighted-delta:rate-scale=0.7
@@ -137,6 +138,12 @@ EmissionTally read_emission_tally(const Options& options) {
   return tally;
 }
 
+/// A method with its options, in one spelling.
+std::string read_method(const std::string& text, std::string_view option,
+                        std::span<const MethodInfo> infos) {
+  return read_option(option, [&] { return to_string(parse_method(text, infos), infos); });
+}
+
 RenderSettings read_settings(const Options& options) {
   RenderSettings settings;
   settings.samples = options.samples;
@@ -146,13 +153,13 @@ RenderSettings read_settings(const Options& options) {
   settings.batch = options.batch;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
-  walk.tracker = to_string(parse_method(options.tracker, tracker_infos()), tracker_infos());
+  walk.tracker = read_method(options.tracker, "--tracker", tracker_infos());
   walk.transmittance =
-      to_string(parse_method(options.transmittance, transmittance_infos()), transmittance_infos());
+      read_method(options.transmittance, "--transmittance", transmittance_infos());
   walk.interpolation = parse_choice(options.interpolation, "--interpolation", kInterpolations);
   walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
   walk.emission = read_emission_tally(options);
-  walk.simd = parse_simd(options.simd);
+  walk.simd = read_option("--simd", [&] { return parse_simd(options.simd); });
   walk.seed = options.seed;
   return settings;
 }
@@ -160,6 +167,7 @@ RenderSettings read_settings(const Options& options) {
 void run(const Options& options) {
   // All that can be wrong with the options is said before the first second of work.
   for (const std::string& output : options.outputs) check_writable(output);
+  check_statistics_file(options.stats, options.outputs, options.volume);
   const RenderSettings settings = read_settings(options);
   const OpticalProperties optics = read_optics(options);
   const LightOptions light_options = read_lights(options);
@@ -178,7 +186,7 @@ void run(const Options& options) {
   }
   report.seconds_load = watch.lap();
   const Medium medium = make_medium(std::move(loaded.field), optics, options.super_voxel);
-  const Camera camera = make_camera(medium.world_bounds(), camera_options, up);
+  const Camera camera = make_camera(*medium.components()[0].density, camera_options, up);
   report.seconds_build = watch.lap();
 
   const ProgressBar bar(std::size_t(camera.width()) * camera.height(), settings.time_limit);
@@ -211,10 +219,11 @@ void add_picture_options(CLI::App& command, Options& o) {
       ->check(CLI::Range(1U, 1U << 30))
       ->group("Picture");
   command.add_option("--time", o.time_limit, "Seconds to render; with --spp, whichever ends first")
-      ->check(CLI::PositiveNumber)
+      ->check(kFiniteNumber & CLI::PositiveNumber)
       ->group("Picture");
   command.add_option("--exposure", o.exposure, "Exposure of a .png [stops]")
       ->capture_default_str()
+      ->check(kFiniteNumber)
       ->group("Picture");
   command.add_option("--stats", o.stats, "Write statistics to a JSON file")->group("Picture");
   command.add_option("--look-at", o.look_at,
@@ -223,6 +232,7 @@ void add_picture_options(CLI::App& command, Options& o) {
       ->group("Picture");
   command.add_option("--fov", o.fov, "Vertical angle of view [degrees]")
       ->capture_default_str()
+      ->check(kFiniteNumber)
       ->group("Picture");
   command.add_option("--up", o.up, "Axis that points up: y or z")
       ->capture_default_str()
@@ -237,6 +247,7 @@ void add_medium_options(CLI::App& command, Options& o) {
       ->group("Medium");
   command.add_option("--density-scale", o.density_scale, "Multiplies the densities")
       ->capture_default_str()
+      ->check(kFiniteNumber)
       ->group("Medium");
   command.add_option("--albedo", o.albedo, "Single-scattering albedo, V or R,G,B [0.99]")
       ->group("Medium");
@@ -246,6 +257,7 @@ void add_medium_options(CLI::App& command, Options& o) {
       ->group("Medium");
   command.add_option("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function")
       ->capture_default_str()
+      ->check(kFiniteNumber)
       ->group("Medium");
   command.add_option("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e")
       ->group("Medium");
@@ -261,6 +273,7 @@ void add_light_options(CLI::App& command, Options& o) {
       ->group("Light");
   command.add_option("--turbidity", o.turbidity, "Haze of sky and sun, 2 to 10")
       ->capture_default_str()
+      ->check(kFiniteNumber)
       ->group("Light");
 }
 

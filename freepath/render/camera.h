@@ -2,6 +2,7 @@
 /// @file The perspective camera, and where to put it for a bare volume.
 
 #include <cmath>
+#include <span>
 
 #include "freepath/base/vector.h"
 #include "freepath/render/up_axis.h"
@@ -53,6 +54,14 @@ class Camera {
 /// up to it as one does to a cloud.
 inline constexpr double kFramingAzimuth = 150;    // [degrees]
 inline constexpr double kFramingElevation = -12;  // [degrees]
+
+/// A view of all the points, as close as that allows but for a margin of 5 % of the picture.
+/// @param points what to show [world]
+/// @param fov vertical angle of view [degrees]
+/// @param aspect width / height of the film
+/// @throws Error for no points, points that are all one or infinite, an angle not in (0, 180), an
+///   aspect that is not positive
+View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect);
 
 /// A view of the whole box, as close as that allows but for a margin of 5 % of the picture.
 /// @param bounds what to show [world]

@@ -1,8 +1,10 @@
 #include "freepath/scene/volume_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
@@ -29,6 +31,46 @@ void set_coefficients(const OpticalProperties& optics, Component& component) {
   component.sigma_s *= optics.density_scale;
 }
 
+/// Corners of the bricks that hold something, of each row along z only the first and the last: all
+/// that their convex hull needs [world].
+std::vector<Vec3d> occupied_corners(const Field& field) {
+  const BrickMap& map = field.voxels;
+  const Vec3i& counts = map.brick_counts();
+  std::vector<Vec3d> corners;
+  const auto add_brick = [&](int x, int y, int z) {
+    const Vec3i first = map.origin() + Vec3i(x, y, z) * BrickMap::kBrickSize;
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3d point;
+      for (int axis = 0; axis < 3; ++axis) {
+        point[axis] = (corner >> axis & 1) != 0
+                          ? std::min(first[axis] + BrickMap::kBrickSize - 1, map.active_max()[axis])
+                          : std::max(first[axis], map.active_min()[axis]);
+      }
+      corners.push_back(point * field.index_to_world);
+    }
+  };
+  for (int x = 0; x < counts.x; ++x) {
+    for (int y = 0; y < counts.y; ++y) {
+      const auto row = map.index().subspan((std::size_t(x) * counts.y + y) * counts.z, counts.z);
+      const auto holds = [](uint32_t brick) { return brick != 0; };
+      const auto first = std::find_if(row.begin(), row.end(), holds);
+      if (first == row.end()) continue;
+      const auto last = std::find_if(row.rbegin(), row.rend(), holds);
+      add_brick(x, y, static_cast<int>(first - row.begin()));
+      add_brick(x, y, static_cast<int>(row.rend() - last) - 1);
+    }
+  }
+  return corners;
+}
+
+/// Straight up or down no horizon tells what is up in the picture; then north is.
+Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
+  const Vec3d world_up(up_vector(up));
+  const Vec3d sight = line_of_sight.normalized();
+  const bool vertical = sight.cross(world_up).length() < 1e-4;
+  return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
+}
+
 }  // namespace
 
 Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel) {
@@ -43,11 +85,12 @@ Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel
   return Medium({component}, super_voxel);
 }
 
-Camera make_camera(const Box3d& world_bounds, const CameraOptions& options, UpAxis up) {
+Camera make_camera(const Field& field, const CameraOptions& options, UpAxis up) {
   const double aspect = static_cast<double>(options.width) / options.height;
-  View view = frame_box(world_bounds, up, options.fov, aspect);
+  View view = frame_points(occupied_corners(field), up, options.fov, aspect);
   if (options.from) view.from = *options.from;
   if (options.at) view.at = *options.at;
+  view.up = picture_up(view.at - view.from, up);
   return Camera(view, options.width, options.height);
 }
 

@@ -46,8 +46,9 @@ struct CameraOptions {
 /// @throws Error for coefficients out of range, and for albedo and coefficients given together
 Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel);
 
-/// @throws Error as Camera and frame_box
-Camera make_camera(const Box3d& world_bounds, const CameraOptions& options, UpAxis up);
+/// @param field what to frame where the options name no position
+/// @throws Error as Camera and frame_points
+Camera make_camera(const Field& field, const CameraOptions& options, UpAxis up);
 
 /// @throws Error as Lights, its environments and the image reader
 Lights make_lights(const LightOptions& options, UpAxis up);

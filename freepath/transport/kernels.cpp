@@ -2,9 +2,11 @@
 
 #include "freepath/transport/kernels.h"
 
-// Machines with SSSE3 but no SSE4 are older than this kind of work.
-#undef HWY_DISABLED_TARGETS
+// Machines with SSSE3 but no SSE4 are older than this kind of work. A build with sanitizers, which
+// takes minutes for each target, names fewer (CMakeLists.txt).
+#ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS HWY_SSSE3
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "freepath/transport/kernels.cpp"
