@@ -35,9 +35,9 @@ namespace freepath::HWY_NAMESPACE {
 /// (bench/README.md has the figures).
 inline constexpr int kGroups = 4;
 
-/// Steps through super-voxels that a group takes before lanes that have their tentative collision
-/// go on without those that still look for theirs.
-inline constexpr int kStepsPerRound = 8;
+/// A group steps through super-voxels until no more than one in kSearchingShare of its lanes still
+/// looks for its tentative collision; the others go on without those, which resume in the next round.
+inline constexpr int kSearchingShare = 4;
 
 template <int N, class Tracker, class Segments, class Medium>
 class Walk {
@@ -66,7 +66,11 @@ class Walk {
       for (Group& group : groups) {
         if (group.alive == 0) continue;
         alive = true;
-        find_collision(group);
+        draw(group);
+      }
+      step_through_segments(groups);
+      for (Group& group : groups) {
+        if (group.alive != 0) aim(group);
       }
       for (Group& group : groups) {
         if (group.colliding != 0) medium_.fetch(group.lookup);
@@ -98,67 +102,82 @@ class Walk {
     HWY_ALIGN_MAX uint32_t ray[kLanes];       ///< Slot in the streams.
     uint32_t alive;      ///< Lanes that hold a ray.
     uint32_t drawing;    ///< Lanes that need a new optical depth.
+    uint32_t searching;  ///< Lanes on their way to a tentative collision.
     uint32_t colliding;  ///< Lanes at a tentative collision.
     uint32_t escaped;
     uint32_t scattered;
     uint32_t absorbed;
   };
 
-  /// Draws optical depths and steps through the segments to where they are spent.
-  HWY_INLINE void find_collision(Group& group) {
-    auto cursor = segments_.load(group.segments);
-    const MaskF drawing = mask_of(group.drawing);
-    const MaskF alive = mask_of(group.alive);
-    VecF tau = hn::Load(kFloat, group.tau);
-    VecU words[3];
-    draw(group, drawing, tau, words);
-
-    VecF rate = hn::Zero(kFloat);
-    MaskF searching = alive;
-    MaskF hit = no_lanes();
-    MaskF escaped = no_lanes();
-    for (int step = 0; step < kStepsPerRound && !hn::AllFalse(kFloat, searching); ++step) {
-      statistics_.super_voxel_steps += hn::CountTrue(kFloat, searching);
-      const auto segment = segments_.segment(cursor, searching);
-      const VecF rate_here = tracker_.rate(medium_.bounds(segment.index));
-      const VecF depth = hn::Mul(rate_here, hn::Sub(segment.exit, cursor.t));
-      const MaskF hits = hn::And(searching, hn::Lt(tau, depth));
-      const VecF place = hn::Min(hn::Add(cursor.t, hn::Div(tau, rate_here)), segment.exit);
-      const MaskF leaves = hn::AndNot(hits, searching);
-      assign(rate, hits, rate_here);
-      assign(tau, leaves, hn::Sub(tau, depth));
-      assign(cursor.t, searching, hn::IfThenElse(hits, place, segment.exit));
-      hit = hn::Or(hit, hits);
-      const MaskF inside =
-          segments_.leave(cursor, segment, hn::And(leaves, hn::Lt(segment.exit, cursor.end)));
-      escaped = hn::Or(escaped, hn::AndNot(inside, leaves));
-      searching = inside;
-    }
-
-    VecF point[3];
-    segments_.position(cursor, point);
-    medium_.aim(point, hit, words[1], words[2], group.lookup);
-    segments_.store(cursor, group.segments);
-    hn::Store(tau, kFloat, group.tau);
-    hn::Store(rate, kFloat, group.rate);
-    group.colliding = bits_of(hit);
-    group.escaped = bits_of(escaped);
-    group.drawing = group.scattered = group.absorbed = 0;
-  }
-
-  /// One block of random words for each lane that begins a new flight between collisions.
-  HWY_INLINE void draw(Group& group, MaskF drawing, VecF& tau, VecU (&words)[3]) {
+  /// One block of random words for each lane that begins a new flight between collisions, and its
+  /// optical depth.
+  HWY_INLINE void draw(Group& group) {
+    group.searching = group.alive;
+    group.colliding = group.escaped = 0;
     const VecU block = hn::Load(kUint, group.block);
     const RandomWords random =
         philox_lanes(block, hn::Load(kUint, group.stream), hn::Load(kUint, group.sample),
                      hn::Load(kUint, group.pixel), seed_);
+    const MaskF drawing = mask_of(group.drawing);
     const MaskU fresh = uint_mask(drawing);
+    VecF tau = hn::Load(kFloat, group.tau);
     assign(tau, drawing, exponential_lanes(random.words[0]));
+    hn::Store(tau, kFloat, group.tau);
     for (int i = 0; i < 3; ++i) {
-      words[i] = hn::IfThenElse(fresh, random.words[i + 1], hn::Load(kUint, group.words[i]));
-      hn::Store(words[i], kUint, group.words[i]);
+      const VecU old = hn::Load(kUint, group.words[i]);
+      hn::Store(hn::IfThenElse(fresh, random.words[i + 1], old), kUint, group.words[i]);
     }
     hn::Store(hn::Add(block, hn::IfThenElseZero(fresh, hn::Set(kUint, 1))), kUint, group.block);
+  }
+
+  /// Every group takes a step before any takes its next: their gathers miss the caches together.
+  HWY_INLINE void step_through_segments(Group (&groups)[kGroups]) {
+    bool first = true;
+    for (bool stepping = true; stepping; first = false) {
+      stepping = false;
+      for (Group& group : groups) {
+        const int searching = std::popcount(group.searching);
+        const int few = first ? 0 : std::popcount(group.alive) / kSearchingShare;
+        if (searching <= few) continue;
+        take_step(group);
+        stepping = true;
+      }
+    }
+  }
+
+  /// To the tentative collision if it lies in this segment, else into the next segment.
+  HWY_INLINE void take_step(Group& group) {
+    auto cursor = segments_.load(group.segments);
+    const MaskF searching = mask_of(group.searching);
+    VecF tau = hn::Load(kFloat, group.tau);
+    VecF rate = hn::Load(kFloat, group.rate);
+    statistics_.super_voxel_steps += static_cast<uint64_t>(std::popcount(group.searching));
+    const auto segment = segments_.segment(cursor, searching);
+    const VecF rate_here = tracker_.rate(medium_.bounds(segment.index));
+    const VecF depth = hn::Mul(rate_here, hn::Sub(segment.exit, cursor.t));
+    const MaskF hits = hn::And(searching, hn::Lt(tau, depth));
+    const VecF place = hn::Min(hn::Add(cursor.t, hn::Div(tau, rate_here)), segment.exit);
+    const MaskF leaves = hn::AndNot(hits, searching);
+    assign(rate, hits, rate_here);
+    assign(tau, leaves, hn::Sub(tau, depth));
+    assign(cursor.t, searching, hn::IfThenElse(hits, place, segment.exit));
+    const MaskF inside =
+        segments_.leave(cursor, segment, hn::And(leaves, hn::Lt(segment.exit, cursor.end)));
+    segments_.store(cursor, group.segments);
+    hn::Store(tau, kFloat, group.tau);
+    hn::Store(rate, kFloat, group.rate);
+    group.searching = bits_of(inside);
+    group.colliding |= bits_of(hits);
+    group.escaped |= bits_of(hn::AndNot(inside, leaves));
+  }
+
+  /// Begins the look-ups of the lanes that have found their tentative collision.
+  HWY_INLINE void aim(Group& group) {
+    VecF point[3];
+    segments_.position(segments_.load(group.segments), point);
+    medium_.aim(point, mask_of(group.colliding), hn::Load(kUint, group.words[1]),
+                hn::Load(kUint, group.words[2]), group.lookup);
+    group.drawing = group.scattered = group.absorbed = 0;
   }
 
   /// Reads the coefficients, lets the tracker decide, and counts.
