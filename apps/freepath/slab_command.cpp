@@ -201,7 +201,13 @@ void add_run_options(CLI::App& command, Options& o) {
   command.add_option("--paths", o.paths, "Paths to trace")->capture_default_str();
   command.add_option("--seed", o.seed, "Seed of the random numbers")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(  // CLI11 would wrap a negative number around
+          [](const std::string& text) {
+            return text.find('-') == std::string::npos
+                       ? ""
+                       : fmt::format("'{}' is negative; a seed is a whole number from 0 on", text);
+          },
+          "");
   command.add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
   command.add_option("--batch", o.batch, "Paths in flight per thread; changes no result")
       ->capture_default_str()
