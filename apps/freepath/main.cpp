@@ -1,9 +1,11 @@
 // freepath: the program. Parses the command line, runs one subcommand and turns an error into one
 // line on standard error and a non-zero exit status.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -11,10 +13,24 @@
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 
+namespace {
+
+/// What is wrong with the command line, in the form of all errors.
+std::string usage_message(const CLI::App* program, const CLI::Error& error) {
+  const auto chosen = program->get_subcommands();
+  const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+  std::string what = error.what();
+  std::replace(what.begin(), what.end(), '\n', ' ');
+  return fmt::format("freepath: error: {}; freepath{} --help explains\n", what, command);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
   program.set_version_flag("--version", freepath::version());
   program.require_subcommand(1);
+  program.failure_message(usage_message);
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   program.footer("freepath COMMAND --help explains a command, with examples.");
   using namespace freepath::program;

@@ -1,5 +1,7 @@
 #include "apps/freepath/parse.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 
@@ -14,7 +16,15 @@ bool read_number(std::string_view text, Number& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+std::string refuse_non_finite(const std::string& text) {
+  double value = 0;
+  if (read_number(std::string_view(text), value) && std::isfinite(value)) return {};
+  return fmt::format("'{}' is not a finite number", text);
+}
+
 }  // namespace
+
+const CLI::Validator kFiniteNumber(refuse_non_finite, "");
 
 std::vector<double> parse_numbers(std::string_view text, std::string_view option) {
   std::vector<double> numbers;

@@ -6,12 +6,28 @@
 #include <string_view>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
+#include "freepath/base/error.h"
 #include "freepath/base/spectrum.h"
 
 namespace freepath::program {
 
 /// "1,2.5,3" as numbers. @throws Error naming the option, for what is not a finite number
 std::vector<double> parse_numbers(std::string_view text, std::string_view option);
+
+/// Checks that an option's value is a finite number: C's notion of numbers has nan and inf too.
+extern const CLI::Validator kFiniteNumber;
+
+/// What `read` returns; the message of an Error it throws gets the option's name in front.
+template <class Read>
+auto read_option(std::string_view option, Read read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    fail("{}: {}", option, error.what());
+  }
+}
 
 /// One value for all channels, or three. @throws Error for another count or not a number
 Spectrum parse_spectrum(std::string_view text, std::string_view option);

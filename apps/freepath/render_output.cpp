@@ -107,6 +107,30 @@ void write_outputs(const std::vector<std::string>& files, double exposure,
   }
 }
 
+void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
+                           const std::string& volume) {
+  namespace fs = std::filesystem;
+  if (file.empty()) return;
+  std::error_code error;
+  const fs::path folder = fs::absolute(file, error).parent_path();
+  if (!fs::is_directory(folder, error)) {
+    fail("--stats {}: the folder {} does not exist; create it first", file, folder.string());
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    fail("--stats {}: the folder {} can't be written to", file, folder.string());
+  }
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
+    fail("--stats {}: exists and is not a file", file);
+  }
+  std::vector<std::string> others = pictures;
+  others.push_back(volume);
+  for (const std::string& other : others) {
+    if (fs::weakly_canonical(other, error) == fs::weakly_canonical(file, error)) {
+      fail("--stats {}: would overwrite {}; choose another name", file, other);
+    }
+  }
+}
+
 void write_statistics(const std::string& file, const RenderResult& result,
                       const RenderReport& report) {
   const std::string aside = fmt::format("{}.{}.tmp", file, getpid());

@@ -36,6 +36,13 @@ struct RenderReport {
 void write_outputs(const std::vector<std::string>& files, double exposure,
                    const RenderResult& result, const RenderReport& report);
 
+/// Checks, before the time is spent, that statistics could be written, and over neither a picture
+/// nor the volume.
+/// @param file may be empty: no statistics
+/// @throws Error that names the file and what to do
+void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
+                           const std::string& volume);
+
 /// Writes the statistics as one JSON object, aside and then renamed.
 /// @throws Error that names the file
 void write_statistics(const std::string& file, const RenderResult& result,
