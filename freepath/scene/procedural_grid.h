@@ -1,0 +1,66 @@
+#pragma once
+/// @file Sampling functions of space into brick maps, and sets of spheres to make shapes of.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "freepath/scene/procedural.h"
+
+namespace freepath::procedural {
+
+/// Voxels over a box of the world: voxel (i,j,k) is centred at origin + (i,j,k)·voxel_size.
+struct GridShape {
+  Vec3i size{0};  ///< Voxels.
+  Vec3f origin{0};
+  float voxel_size = 1;
+
+  Vec3f centre(const Vec3i& voxel) const { return origin + Vec3f(voxel) * voxel_size; }
+};
+
+/// Length of the longest side of every procedural volume [world].
+inline constexpr float kLongestSide = 100;
+
+/// The grid over a box whose longest side is kLongestSide.
+/// @throws Error for a resolution out of range
+GridShape grid_over(const Box3f& box, int resolution);
+
+/// 8³ voxels to be sampled.
+struct BrickPlace {
+  Vec3i first;        ///< First voxel.
+  Vec3f centre;       ///< World.
+  float radius = 0;   ///< Of the sphere around all its voxel centres [world].
+};
+
+/// Fills the values of a brick, 512 for each field one after the other, zero at first. False: it is
+/// empty.
+using BrickSampler = std::function<bool(const BrickPlace&, std::span<float>)>;
+
+/// Samples fields over a grid, bricks in parallel. Only bricks that hold something are stored.
+std::vector<Field> sample_fields(const GridShape& shape, std::span<const std::string> names,
+                                 const BrickSampler& sampler,
+                                 const std::function<void(double)>& progress);
+
+struct Sphere {
+  Vec3f centre{0};
+  float radius = 0;
+};
+
+/// The union of spheres as a distance: negative inside.
+class SphereUnion {
+ public:
+  explicit SphereUnion(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {}
+
+  float distance(const Vec3f& point) const;
+  Box3f bounds() const;
+  /// Those spheres that the distance may come from at some point within `radius` of `centre`.
+  SphereUnion near(const Vec3f& centre, float radius) const;
+  /// Moves and scales all spheres: centre · scale + offset.
+  void transform(float scale, const Vec3f& offset);
+
+ private:
+  std::vector<Sphere> spheres_;
+};
+
+}  // namespace freepath::procedural
