@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "freepath/base/error.h"
@@ -37,6 +38,14 @@ void check_component(const Component& component, const Component& first, std::si
     fail("grids '{}' and '{}' differ in transform or bounds; components must share them",
          field.name, first.density->name);
   }
+}
+
+/// Whether the channels are equal but for rounding: (1 - albedo) · sigma and albedo · sigma, each
+/// scaled once more, add up to sigma within a few units in the last place.
+bool is_grey_but_for_rounding(const Spectrum& s) {
+  constexpr float kTolerance = 8 * std::numeric_limits<float>::epsilon();
+  const auto [low, high] = std::minmax({s.x, s.y, s.z});
+  return high - low <= kTolerance * high;
 }
 
 /// Edge of a cube with a voxel's volume [world], for the cost model alone.
@@ -120,7 +129,7 @@ Box3d Medium::world_bounds() const {
 
 bool Medium::has_grey_extinction() const {
   return std::all_of(components_.begin(), components_.end(),
-                     [](const Component& c) { return freepath::is_grey(c.sigma_t()); });
+                     [](const Component& c) { return is_grey_but_for_rounding(c.sigma_t()); });
 }
 
 bool Medium::is_grey() const {
