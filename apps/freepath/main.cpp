@@ -20,8 +20,23 @@ std::string usage_message(const CLI::App* program, const CLI::Error& error) {
   const auto chosen = program->get_subcommands();
   const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
   std::string what = error.what();
+  if (chosen.empty() && !program->remaining().empty()) {
+    what = fmt::format("there is no command '{}'", program->remaining().front());
+  }
   std::replace(what.begin(), what.end(), '\n', ' ');
   return fmt::format("freepath: error: {}; freepath{} --help explains\n", what, command);
+}
+
+/// Lets no option have an empty value: it would pass for an option that is not given.
+void refuse_empty_values(CLI::App& program) {
+  const CLI::Validator not_empty(
+      [](const std::string& text) { return std::string(text.empty() ? "the value is empty" : ""); },
+      "");
+  for (CLI::App* const command : program.get_subcommands({})) {
+    for (CLI::Option* const option : command->get_options()) {
+      if (option->get_expected_min() > 0) option->check(not_empty);
+    }
+  }
 }
 
 }  // namespace
@@ -39,6 +54,7 @@ int main(int argc, char** argv) {
   add_generate_command(program);
   add_slab_command(program);
   add_diff_command(program);
+  refuse_empty_values(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

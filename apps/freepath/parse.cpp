@@ -22,9 +22,16 @@ std::string refuse_non_finite(const std::string& text) {
   return fmt::format("'{}' is not a finite number", text);
 }
 
+std::string refuse_non_whole(const std::string& text) {
+  uint64_t value = 0;
+  if (read_number(std::string_view(text), value)) return {};
+  return fmt::format("'{}' is not a whole number from 0 to 2^64 - 1", text);
+}
+
 }  // namespace
 
 const CLI::Validator kFiniteNumber(refuse_non_finite, "");
+const CLI::Validator kWholeNumber(refuse_non_whole, "");
 
 std::vector<double> parse_numbers(std::string_view text, std::string_view option) {
   std::vector<double> numbers;

@@ -19,6 +19,10 @@ std::vector<double> parse_numbers(std::string_view text, std::string_view option
 /// Checks that an option's value is a finite number: C's notion of numbers has nan and inf too.
 extern const CLI::Validator kFiniteNumber;
 
+/// Checks that it is a whole number from 0 to 2^64 - 1: unsigned options would take -1 for the
+/// largest.
+extern const CLI::Validator kWholeNumber;
+
 /// What `read` returns; the message of an Error it throws gets the option's name in front.
 template <class Read>
 auto read_option(std::string_view option, Read read) {

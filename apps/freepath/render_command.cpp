@@ -311,7 +311,9 @@ void add_method_options(CLI::App& command, Options& o) {
 }
 
 void add_run_options(CLI::App& command, Options& o) {
-  command.add_option("--seed", o.seed, "Seed of the random numbers")->capture_default_str();
+  command.add_option("--seed", o.seed, "Seed of the random numbers")
+      ->capture_default_str()
+      ->check(kWholeNumber);
   command.add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
   command.add_option("--batch", o.batch, "Paths in flight per thread; changes no result")
       ->capture_default_str()
