@@ -18,16 +18,26 @@ class Billows {
     for (float s = size_; s >= smallest_; s *= kLacunarity) total_ += s * steepness_;
   }
 
-  /// Height of the surface over its mean [world].
-  float height(const Vec3f& point) const {
-    float sum = 0;
+  /// Depth below the surface with the bumps on it. A bump reaches as deep as twice its size, so that
+  /// deep points, and those that no bump can reach, are not worked out in full.
+  /// @param depth below the surface without bumps [world]
+  /// @param strength 0 to 1, scales the bumps
+  float raise(const Vec3f& point, float depth, float strength) const {
+    float left = total_;
     uint32_t seed = seed_;
     for (float size = size_; size >= smallest_; size *= kLacunarity) {
-      sum += size * steepness_ * (billow_noise(point / size, seed++) - kMean);
+      const float height = size * steepness_;
+      if (depth + left * (1 - kMean) <= 0) break;
+      left -= height;
+      const float reach = 1 - smooth_step(size, 2 * size, depth);
+      if (reach > 0) {
+        depth += strength * reach * height * (billow_noise(point / size, seed) - kMean);
+      }
+      ++seed;
     }
-    return sum;
+    return depth;
   }
-  /// Bounds of the height: -inward() to outward().
+  /// How far bumps reach out of the surface, and into it.
   float outward() const { return total_ * (1 - kMean); }
   float inward() const { return total_ * kMean; }
 

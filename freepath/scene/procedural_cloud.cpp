@@ -83,7 +83,7 @@ float Cloud::density(const Vec3f& point, const SphereUnion& near) const {
   const float rough = near.distance(point);
   if (rough > billows.outward() + kWarp) return 0;
   float depth = -rough;
-  if (depth < billows.inward() + kCore + kWarp) {
+  if (depth < kCore + kWarp) {
     const Vec3f coarse = point * 0.06F;
     const Vec3f pushed = point + Vec3f(gradient_noise(coarse, seed + 2),
                                        gradient_noise(coarse, seed + 3),
@@ -91,11 +91,11 @@ float Cloud::density(const Vec3f& point, const SphereUnion& near) const {
                                      kWarp;
     // The base is smooth: bumps fade in above it.
     const float bumps = 0.25F + 0.75F * smooth_step(0, 9, height);
-    depth = -near.distance(pushed) + billows.height(pushed) * bumps;
+    depth = billows.raise(pushed, -near.distance(pushed), bumps);
     if (depth <= 0) return 0;
   }
   const float body = 0.5F + 0.5F * smooth_step(0, kCore, depth);
-  const float variation = 0.86F + 0.14F * fractal_noise(point * 0.15F, 3, 0.5F, seed + 5);
+  const float variation = 0.86F + 0.14F * fractal_noise(point * 0.15F, 2, 0.5F, seed + 5);
   const float border = smooth_step(0, edge, depth) * smooth_step(0, 2.5F, height);
   return std::min(1.0F, border * body * variation);
 }

@@ -57,13 +57,12 @@ Fireball::Sample Fireball::at(const Vec3f& point, const SphereUnion& near) const
   if (point.y < 0 || near.distance(point) > billows.outward() + kWarp) return {};
   const Vec3f pushed = point + curl_noise(point * 0.06F, seed + 2) * (kWarp / 6);
   const float rough = -near.distance(pushed);
-  const float bump = billows.height(pushed);
-  const float depth = rough + bump;
+  const float depth = billows.raise(pushed, rough, 1);
   if (depth <= 0) return {};
   // Heat: from the middle outward it falls; a crest is cooler than a crease of the same depth.
   const float inner = 1 - (point - centre).length() / size;
   const float eddies = fractal_noise(point * 0.09F, 4, 0.55F, seed + 5);
-  const float crease = -bump / (billows.inward() + 1e-3F);
+  const float crease = (rough - depth) / (billows.inward() + 1e-3F);
   const float heat = 0.5F + 0.75F * inner + 0.5F * eddies + 0.55F * crease -
                      0.3F * smooth_step(4, 0, depth);
   const float hot = smooth_step(0, 1, heat);
