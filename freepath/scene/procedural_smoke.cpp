@@ -119,7 +119,7 @@ std::vector<Field> generate_smoke(const ProceduralOptions& options) {
   const auto seed = static_cast<uint32_t>(options.seed ^ options.seed >> 32) * 91U + 5U;
   const Box3f box(Vec3f(-kWidth / 2, 0, -kWidth / 2), Vec3f(kWidth / 2, kLongestSide, kWidth / 2));
   const GridShape shape = grid_over(box, options.resolution);
-  constexpr float kSpacing = 1;
+  constexpr float kSpacing = 2;
   const CoarseFlow flow(box, kSpacing, [&](const Vec3f& point) { return carried(point, seed); });
   // Octaves of detail down to two voxels; the first has features of 4.5.
   int octaves = 1;
