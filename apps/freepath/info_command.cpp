@@ -13,6 +13,7 @@
 
 #include "apps/freepath/commands.h"
 #include "freepath/io/volume.h"
+#include "freepath/media/super_voxels.h"
 
 namespace freepath::program {
 namespace {
@@ -112,6 +113,22 @@ std::string transform_text(const GridInfo& info) {
   return text + fmt::format("moved by ({:.6g}, {:.6g}, {:.6g})", move.x, move.y, move.z);
 }
 
+/// The super-voxels that a render with a density scale of 1 would walk through.
+struct SuperVoxelFacts {
+  int cell_size;
+  Vec3i counts;
+  SuperVoxelSummary summary;
+  std::size_t memory_bytes;
+};
+
+SuperVoxelFacts super_voxel_facts(const Field& field) {
+  const BrickMap* const maps[] = {&field.voxels};
+  const auto edge_length = std::cbrt(std::abs(field.index_to_world.determinant()));
+  const float extinction[] = {static_cast<float>(edge_length)};
+  const SuperVoxels cells = build_super_voxels(maps, extinction, 0);
+  return {cells.cell_size, cells.counts, summarize(cells), cells.memory_bytes()};
+}
+
 void print_grid(const Described& grid) {
   const GridInfo& info = grid.info;
   const auto row = [](const char* name, const std::string& text) {
@@ -142,6 +159,15 @@ void print_grid(const Described& grid) {
     row("in memory", fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
                                  size_text(static_cast<double>(map.memory_bytes())),
                                  map.brick_count() - 1));
+    const SuperVoxelFacts cells = super_voxel_facts(grid.loaded->field);
+    row("super-voxels",
+        fmt::format("{} x {} x {} of {} voxels a side, {:.1f} % occupied, {}", cells.counts.x,
+                    cells.counts.y, cells.counts.z, cells.cell_size,
+                    100.0 * static_cast<double>(cells.summary.occupied) /
+                        static_cast<double>(cells.summary.cells),
+                    size_text(static_cast<double>(cells.memory_bytes))));
+    row("", fmt::format("of those occupied the mean maximum is {:.4g}, the mean minimum {:.4g}",
+                        cells.summary.mean_maximum, cells.summary.mean_minimum));
     for (const std::string& warning : grid.loaded->warnings) row("warning", warning);
   } else {
     row("not loadable", info.reason);
@@ -179,6 +205,14 @@ nlohmann::json grid_json(const Described& grid) {
     const BrickMap& map = grid.loaded->field.voxels;
     json["memory_bytes"] = map.memory_bytes();
     json["bricks"] = map.brick_count() - 1;
+    const SuperVoxelFacts cells = super_voxel_facts(grid.loaded->field);
+    json["super_voxels"] = {{"edge_voxels", cells.cell_size},
+                            {"counts", to_json(cells.counts)},
+                            {"cells", cells.summary.cells},
+                            {"occupied", cells.summary.occupied},
+                            {"mean_maximum", cells.summary.mean_maximum},
+                            {"mean_minimum", cells.summary.mean_minimum},
+                            {"memory_bytes", cells.memory_bytes}};
     json["warnings"] = grid.loaded->warnings;
   }
   return json;

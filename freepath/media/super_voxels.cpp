@@ -198,6 +198,22 @@ std::size_t SuperVoxels::memory_bytes() const {
          empty_radius.capacity() * sizeof(int32_t);
 }
 
+SuperVoxelSummary summarize(const SuperVoxels& cells, int component) {
+  SuperVoxelSummary summary;
+  summary.cells = cells.cell_count();
+  for (std::size_t cell = 0; cell < summary.cells; ++cell) {
+    const std::size_t entry = cell * cells.components + component;
+    if (cells.maxima[entry] <= 0) continue;
+    ++summary.occupied;
+    summary.mean_maximum += cells.maxima[entry];
+    summary.mean_minimum += cells.minima[entry];
+  }
+  const auto occupied = static_cast<double>(std::max<std::size_t>(summary.occupied, 1));
+  summary.mean_maximum /= occupied;
+  summary.mean_minimum /= occupied;
+  return summary;
+}
+
 SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                std::span<const float> extinction, int cell_size,
                                const SuperVoxelCost& cost) {

@@ -31,6 +31,17 @@ struct SuperVoxels {
   std::size_t memory_bytes() const;
 };
 
+/// What the cells of one component are like.
+struct SuperVoxelSummary {
+  std::size_t cells = 0;
+  std::size_t occupied = 0;    ///< Cells whose maximum is not 0.
+  double mean_maximum = 0;     ///< Over the occupied cells.
+  double mean_minimum = 0;     ///< Over the occupied cells; its share of the maximum is what a
+                               ///< control of minima can decide without a look-up.
+};
+
+SuperVoxelSummary summarize(const SuperVoxels& cells, int component = 0);
+
 /// Edge lengths that build_super_voxels chooses from [voxels].
 inline constexpr int kSuperVoxelSizes[] = {4, 8, 16, 32, 64};
 

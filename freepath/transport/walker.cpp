@@ -9,6 +9,7 @@ namespace {
 
 std::vector<MethodInfo> infos_of(const std::vector<Kernel>& kernels) {
   std::vector<MethodInfo> infos;
+  infos.reserve(kernels.size());
   for (const Kernel& kernel : kernels) infos.push_back(kernel.info);
   return infos;
 }
