@@ -27,9 +27,9 @@ constexpr float kExtinction = 0.5F;
 constexpr int kSuperVoxel = 8;
 
 float hash_noise(int x, int y, int z, uint32_t salt) {
-  const auto words = philox({static_cast<uint32_t>(x), static_cast<uint32_t>(y),
-                             static_cast<uint32_t>(z), salt},
-                            {0, 0}, 4);
+  const auto words =
+      philox({static_cast<uint32_t>(x), static_cast<uint32_t>(y), static_cast<uint32_t>(z), salt},
+             {0, 0}, 4);
   return uniform_from_bits(words[0]);
 }
 
@@ -37,10 +37,10 @@ float mix(float a, float b, float part) { return a + (b - a) * part; }
 
 /// Interpolates between the corners of a cube, x slowest.
 float mix_corners(const std::array<float, 8>& corners, const Vec3f& place) {
-  const float low = mix(mix(corners[0], corners[1], place.z), mix(corners[2], corners[3], place.z),
-                        place.y);
-  const float high = mix(mix(corners[4], corners[5], place.z), mix(corners[6], corners[7], place.z),
-                         place.y);
+  const float low =
+      mix(mix(corners[0], corners[1], place.z), mix(corners[2], corners[3], place.z), place.y);
+  const float high =
+      mix(mix(corners[4], corners[5], place.z), mix(corners[6], corners[7], place.z), place.y);
   return mix(low, high, place.x);
 }
 
@@ -48,8 +48,9 @@ float value_noise(const Vec3f& point, uint32_t salt) {
   const Vec3f base(std::floor(point.x), std::floor(point.y), std::floor(point.z));
   std::array<float, 8> corners;
   for (int i = 0; i < 8; ++i) {
-    corners[i] = hash_noise(static_cast<int>(base.x) + (i >> 2), static_cast<int>(base.y) + (i >> 1 & 1),
-                            static_cast<int>(base.z) + (i & 1), salt);
+    corners[i] =
+        hash_noise(static_cast<int>(base.x) + (i >> 2), static_cast<int>(base.y) + (i >> 1 & 1),
+                   static_cast<int>(base.z) + (i & 1), salt);
   }
   return mix_corners(corners, point - base);
 }
@@ -74,9 +75,7 @@ class CornerGrid {
   }
 
  private:
-  std::size_t offset(int x, int y, int z) const {
-    return (std::size_t(x) * edge_ + y) * edge_ + z;
-  }
+  std::size_t offset(int x, int y, int z) const { return (std::size_t(x) * edge_ + y) * edge_ + z; }
   static float shape(int x, int y, int z) {
     const Vec3f place = Vec3f(float(x), float(y), float(z)) / kFeature;
     float sum = 0;

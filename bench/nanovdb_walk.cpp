@@ -45,10 +45,10 @@ openvdb::FloatGrid::Ptr to_openvdb(const BrickMap& map) {
         const uint32_t brick = map.index()[(std::size_t(x) * counts.y + y) * counts.z + z];
         if (brick == 0) continue;
         const Vec3i first = map.origin() + Vec3i(x, y, z) * BrickMap::kBrickSize;
-        auto* leaf = new openvdb::FloatTree::LeafNodeType(
-            openvdb::Coord(first.x, first.y, first.z), 0.0F, true);
-        const auto voxels =
-            map.voxels().subspan(std::size_t(brick) * BrickMap::kBrickVoxels, BrickMap::kBrickVoxels);
+        auto* leaf = new openvdb::FloatTree::LeafNodeType(openvdb::Coord(first.x, first.y, first.z),
+                                                          0.0F, true);
+        const auto voxels = map.voxels().subspan(std::size_t(brick) * BrickMap::kBrickVoxels,
+                                                 BrickMap::kBrickVoxels);
         std::copy(voxels.begin(), voxels.end(), leaf->buffer().data());
         grid->tree().addLeaf(leaf);  // which takes it over
       }
@@ -71,9 +71,9 @@ struct Cells {
 struct NanovdbWalk::Data {
   nanovdb::GridHandle<nanovdb::HostBuffer> handle;
   const SuperVoxels* cells;
-  Vec3f first_corner;      ///< Of the cells [world]; the edge of a voxel is 1.
-  Box3f bounds;            ///< Where the walk takes place [world].
-  float sigma_t;           ///< [1/m per density]
+  Vec3f first_corner;  ///< Of the cells [world]; the edge of a voxel is 1.
+  Box3f bounds;        ///< Where the walk takes place [world].
+  float sigma_t;       ///< [1/m per density]
 
   const nanovdb::FloatGrid& grid() const { return *handle.grid<float>(); }
 };
@@ -161,8 +161,8 @@ void fly(const NanovdbWalk::Data& data, const Density<kInterpolation>& density, 
   float weight = 1;
   float tau = random.exponential();
   for (;;) {
-    const int axis = c.next[0] < c.next[1] ? (c.next[0] < c.next[2] ? 0 : 2)
-                                           : (c.next[1] < c.next[2] ? 1 : 2);
+    const int axis =
+        c.next[0] < c.next[1] ? (c.next[0] < c.next[2] ? 0 : 2) : (c.next[1] < c.next[2] ? 1 : 2);
     const float exit = std::min(c.next[axis], end);
     const float rate =
         data.sigma_t *
@@ -206,9 +206,8 @@ Tally fly_all(const NanovdbWalk::Data& data, const RayStream& rays) {
 NanovdbWalk::NanovdbWalk(const Medium& medium) : data_(std::make_unique<Data>()) {
   const Component& component = medium.components()[0];
   const BrickMap& map = component.density->voxels;
-  data_->handle =
-      nanovdb::openToNanoVDB(*to_openvdb(map), nanovdb::StatsMode::Disable,
-                             nanovdb::ChecksumMode::Disable);
+  data_->handle = nanovdb::openToNanoVDB(*to_openvdb(map), nanovdb::StatsMode::Disable,
+                                         nanovdb::ChecksumMode::Disable);
   data_->cells = &medium.super_voxels();
   data_->first_corner = Vec3f(map.origin()) - Vec3f(0.5F);
   data_->bounds = Box3f(Vec3f(map.active_min()) - Vec3f(1), Vec3f(map.active_max()) + Vec3f(1));

@@ -31,9 +31,9 @@ class KeepingReporter : public benchmark::ConsoleReporter {
 /// Rows that are compared with the first of them.
 struct Table {
   std::string title;
-  std::vector<std::string> rows;                 ///< Titles of the rows.
-  std::vector<std::string> benchmarks;           ///< Name of each row's benchmark.
-  std::vector<std::function<Tally()>> tallies;   ///< What each does, walked once more.
+  std::vector<std::string> rows;                ///< Titles of the rows.
+  std::vector<std::string> benchmarks;          ///< Name of each row's benchmark.
+  std::vector<std::function<Tally()>> tallies;  ///< What each does, walked once more.
 };
 
 /// Prints the rows that ran, and tests that they have the same mean number of collisions and the

@@ -6,9 +6,9 @@ namespace freepath::bench {
 /// Sums over rays, with the squares that a test for equal means needs.
 struct Tally {
   double rays = 0;
-  double collisions = 0;          ///< Tentative collisions.
+  double collisions = 0;  ///< Tentative collisions.
   double collisions_squared = 0;
-  double weight = 0;              ///< 1 for a ray that escaped, or the transmittance along it.
+  double weight = 0;  ///< 1 for a ray that escaped, or the transmittance along it.
   double weight_squared = 0;
 
   void add_ray(double ray_collisions, double ray_weight) {

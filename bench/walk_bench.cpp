@@ -1,6 +1,6 @@
-/// @file Time of a tentative collision: the walk of other renderers (one ray after the other, NanoVDB,
-/// trilinear) against the stream walk on every SIMD target, on a field that fits the caches and on
-/// one that does not, in one interleaved run. bench/README.md has the figures.
+/// @file Time of a tentative collision: the walk of other renderers (one ray after the other,
+/// NanoVDB, trilinear) against the stream walk on every SIMD target, on a field that fits the
+/// caches and on one that does not, in one interleaved run. bench/README.md has the figures.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -104,18 +104,19 @@ struct Row {
 std::vector<Row> make_rows(const Problem& problem, Estimate estimate) {
   std::vector<Row> rows;
   const auto add_nanovdb = [&](const char* title, Interpolation interpolation) {
-    rows.push_back({title, std::make_shared<NanovdbVariant>(problem.nanovdb, estimate,
-                                                            interpolation)});
+    rows.push_back(
+        {title, std::make_shared<NanovdbVariant>(problem.nanovdb, estimate, interpolation)});
   };
   add_nanovdb("scalar, NanoVDB, trilinear", Interpolation::kTrilinear);
   add_nanovdb("scalar, NanoVDB, stochastic", Interpolation::kStochastic);
   const std::vector<Simd> available = available_simd();
   for (auto simd = available.rbegin(); simd != available.rend(); ++simd) {
-    for (const auto& [name, interpolation] : {std::pair("trilinear", Interpolation::kTrilinear),
-                                              std::pair("stochastic", Interpolation::kStochastic)}) {
-      rows.push_back({fmt::format("walk, {}, {}", to_string(*simd), name),
-                      std::make_shared<StreamVariant>(problem.medium, estimate, interpolation,
-                                                      *simd)});
+    for (const auto& [name, interpolation] :
+         {std::pair("trilinear", Interpolation::kTrilinear),
+          std::pair("stochastic", Interpolation::kStochastic)}) {
+      rows.push_back(
+          {fmt::format("walk, {}, {}", to_string(*simd), name),
+           std::make_shared<StreamVariant>(problem.medium, estimate, interpolation, *simd)});
     }
   }
   return rows;
@@ -128,7 +129,8 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-void time_variant(benchmark::State& state, Variant& variant, const std::vector<RayStream>& streams) {
+void time_variant(benchmark::State& state, Variant& variant,
+                  const std::vector<RayStream>& streams) {
   double collisions = 0;
   double rays = 0;
   double seconds = 0;
@@ -152,15 +154,14 @@ Table make_table(const Problem& problem, Estimate estimate) {
                             free_path ? "delta tracking to the first real collision"
                                       : "ratio tracking of a transmittance");
   for (const Row& row : make_rows(problem, estimate)) {
-    const std::string name = fmt::format("{}^3/{}/{}", problem.size,
-                                         free_path ? "delta" : "ratio", row.title);
+    const std::string name =
+        fmt::format("{}^3/{}/{}", problem.size, free_path ? "delta" : "ratio", row.title);
     table.rows.push_back(row.title);
     table.benchmarks.push_back(name);
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [variant = row.variant, &problem](benchmark::State& state) {
-                                   time_variant(state, *variant, problem.rays);
-                                 })
-        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(name.c_str(), [variant = row.variant,
+                                                &problem](benchmark::State& state) {
+      time_variant(state, *variant, problem.rays);
+    })->Unit(benchmark::kMillisecond);
     table.tallies.push_back([variant = row.variant, &problem] {
       Tally tally;
       for (const RayStream& stream : problem.rays) tally.merge(variant->tally(stream));
@@ -173,11 +174,12 @@ Table make_table(const Problem& problem, Estimate estimate) {
 void describe(const Problem& problem) {
   const SuperVoxels& cells = problem.medium.super_voxels();
   const BrickMap& map = problem.medium.components()[0].density->voxels;
-  fmt::print("{}^3: {:.1f} MB of bricks, {:.1f} MB of super-voxels of {} voxels an edge, "
-             "majorants {:.1f} times the mean extinction\n",
-             problem.size, static_cast<double>(map.memory_bytes()) / 1e6,
-             static_cast<double>(cells.memory_bytes()) / 1e6, cells.cell_size,
-             majorant_ratio(problem.medium));
+  fmt::print(
+      "{}^3: {:.1f} MB of bricks, {:.1f} MB of super-voxels of {} voxels an edge, "
+      "majorants {:.1f} times the mean extinction\n",
+      problem.size, static_cast<double>(map.memory_bytes()) / 1e6,
+      static_cast<double>(cells.memory_bytes()) / 1e6, cells.cell_size,
+      majorant_ratio(problem.medium));
 }
 
 int run(int argc, char** argv) {
