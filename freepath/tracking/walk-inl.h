@@ -35,8 +35,8 @@ namespace freepath::HWY_NAMESPACE {
 /// (bench/README.md has the figures).
 inline constexpr int kGroups = 4;
 
-/// A group steps through super-voxels until no more than one in kSearchingShare of its lanes still
-/// looks for its tentative collision; the others go on without those, which resume in the next round.
+/// A group steps through super-voxels until no more than one in kSearchingShare of its lanes
+/// still looks for its tentative collision; the others go on, and those resume in the next round.
 inline constexpr int kSearchingShare = 4;
 
 template <int N, class Tracker, class Segments, class Medium>
