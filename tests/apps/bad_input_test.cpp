@@ -1,0 +1,204 @@
+// What the program says to wrong input: one line that names the culprit, no picture, no crash.
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "tests/apps/program.h"
+#include "tests/apps/scene_files.h"
+
+namespace freepath::testing {
+namespace {
+
+class BadInputTest : public ProgramTest {
+ protected:
+  BadInputTest() { write_cube(path("ball.vdb")); }
+
+  /// Runs a command that must fail, with one line that has each of `parts` in it, and no new file.
+  void expect_error(const std::string& line, const std::vector<std::string>& parts) const {
+    expect_error(words(line), line, parts);
+  }
+
+  void expect_error(const std::vector<std::string>& arguments, const std::string& name,
+                    const std::vector<std::string>& parts) const {
+    const std::vector<std::string> before = files();
+    const Outcome outcome = run_program(arguments, folder_, std::chrono::seconds(20));
+    SCOPED_TRACE(name);
+    EXPECT_FALSE(outcome.timed_out) << outcome;
+    EXPECT_EQ(outcome.signal, 0) << outcome;
+    EXPECT_GT(outcome.status, 0) << outcome;
+    EXPECT_EQ(outcome.output, "") << outcome;
+    EXPECT_EQ(outcome.messages.rfind("freepath: error: ", 0), 0U) << outcome;
+    EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1) << outcome;
+    for (const std::string& part : parts) {
+      EXPECT_NE(outcome.messages.find(part), std::string::npos) << "no " << part << ": " << outcome;
+    }
+    EXPECT_EQ(files(), before);
+  }
+
+  void expect_render_error(const std::string& options,
+                           const std::vector<std::string>& parts) const {
+    expect_error("render ball.vdb -o picture.exr --size 8x8 --spp 1 " + options, parts);
+  }
+};
+
+TEST_F(BadInputTest, TheCommandLineItself) {
+  expect_error("", {"subcommand"});
+  expect_error("paint ball.vdb", {"paint"});
+  expect_error("render", {"volume"});
+  expect_error("render ball.vdb", {"--output"});
+  expect_error("render ball.vdb -o", {"--output"});
+  expect_render_error("--colour red", {"--colour"});
+  expect_render_error("--seed 1 --seed 2", {"--seed"});
+}
+
+TEST_F(BadInputTest, NumbersThatAreNone) {
+  // Two values for each option, so that each value meets several kinds of options.
+  const auto try_values = [&](const std::vector<std::string>& options,
+                              const std::vector<std::string>& values) {
+    std::size_t next = 0;
+    for (const std::string& option : options) {
+      for (int i = 0; i < 2; ++i) {
+        const std::string& value = values[next++ % values.size()];
+        std::vector<std::string> arguments = words("render ball.vdb -o picture.exr --size 8x8");
+        arguments.push_back(option);
+        arguments.push_back(value);
+        expect_error(arguments, option + " '" + value + "'", {option});
+      }
+    }
+  };
+  try_values({"--density-scale", "--g", "--fov", "--exposure", "--turbidity", "--time", "--albedo",
+              "--sigma-a", "--sigma-s", "--le"},
+             {"nan", "", "1,2", "inf", "ten", "1e999", "-inf"});
+  try_values({"--spp", "--threads", "--batch", "--seed", "--seed", "--seed"},
+             {"-1", "1.5", "", "99999999999999999999999"});
+}
+
+TEST_F(BadInputTest, NumbersOutOfRange) {
+  expect_render_error("--density-scale -1", {"density scale", "negative"});
+  expect_render_error("--density-scale 1e39", {"density scale"});
+  expect_render_error("--albedo 1.5", {"albedo", "1.5"});
+  expect_render_error("--albedo 0.5,0.5,2", {"albedo", "2"});
+  expect_render_error("--albedo 0.5 --sigma-s 1", {"--albedo", "--sigma-s"});
+  expect_render_error("--sigma-a -1", {"sigma_a"});
+  expect_render_error("--sigma-s 1,-1,1", {"sigma_s"});
+  expect_render_error("--sigma-s 1,2,3,4", {"--sigma-s", "4 values"});
+  expect_render_error("--le -1", {"emission"});
+  expect_render_error("--g 1", {"g", "1"});
+  expect_render_error("--fov 0", {"angle of view"});
+  expect_render_error("--fov 180", {"angle of view"});
+  expect_render_error("--super-voxel 5", {"super-voxel"});
+  expect_render_error("--threads 0", {"--threads"});
+  expect_render_error("--time 0", {"--time"});
+  expect_render_error("--turbidity 100", {"turbidity"});
+  expect_render_error("--sun -5,0", {"sun", "-5"});
+  expect_render_error("--sun 10", {"--sun"});
+  expect_render_error("--environment -1", {"radiance"});
+  expect_render_error("--environment 1,2", {"--environment"});
+  expect_render_error("--max-scatterings 0", {"--max-scatterings"});
+  expect_error("render ball.vdb -o picture.exr --spp 0", {"--spp"});
+}
+
+TEST_F(BadInputTest, SizesThatAreNone) {
+  for (const char* size : {"0x0", "10x", "10", "10x10x10", "-1x5", "99999x1", "99999999999x1"}) {
+    expect_error(std::string("render ball.vdb -o picture.exr --spp 1 --size ") + size, {"--size"});
+  }
+}
+
+TEST_F(BadInputTest, ChoicesThatThereAreNot) {
+  expect_render_error("--tracker magic", {"--tracker", "magic", "weighted-delta"});
+  expect_render_error("--tracker delta:speed=2", {"delta", "speed"});
+  expect_render_error("--tracker weighted-delta:rate-scale", {"rate-scale", "value"});
+  expect_render_error("--tracker weighted-delta:rate-scale=nan", {"rate-scale", "nan"});
+  expect_render_error("--tracker weighted-delta:rate-scale=0", {"rate-scale", "0"});
+  expect_render_error("--tracker weighted-delta:", {"weighted-delta"});
+  expect_render_error("--transmittance magic", {"--transmittance", "magic", "ratio"});
+  expect_render_error("--interpolation cubic", {"--interpolation", "trilinear"});
+  expect_render_error("--absorption some", {"--absorption", "analog"});
+  expect_render_error("--emission some", {"--emission", "collision"});
+  expect_render_error("--up x", {"--up", "y, z"});
+  expect_render_error("--negative keep", {"--negative", "clamp"});
+  expect_render_error("--simd mmx", {"mmx", "avx2"});
+}
+
+TEST_F(BadInputTest, ViewsThatAreNone) {
+  expect_render_error("--look-at 1,2", {"--look-at"});
+  expect_render_error("--look-at 1,2,3,1,2,3", {"camera"});
+  expect_render_error("--look-at 1,nan,0", {"--look-at"});
+}
+
+TEST_F(BadInputTest, VolumesThatAreNone) {
+  std::filesystem::create_directory(path("folder"));
+  write_text(path("garbage.vdb"), "this is no volume, whatever its name may say; not at all");
+  write_text(path("empty.vdb"), "");
+  const std::string rest = " -o picture.exr --size 8x8 --spp 1";
+  for (const char* name : {"missing.vdb", "folder", "garbage.vdb", "empty.vdb"}) {
+    expect_error(std::string("render ") + name + rest, {name});
+    expect_error(std::string("info --json ") + name, {name});
+  }
+  for (const double part : {0.1, 0.6, 0.999}) {
+    write_cube(path("cut.vdb"));
+    truncate_file(path("cut.vdb"), part);
+    expect_error("render cut.vdb" + rest, {"cut.vdb"});
+  }
+}
+
+TEST_F(BadInputTest, GridsThatThereAreNot) {
+  expect_render_error("--grid smoke", {"smoke", "density"});
+  expect_render_error("--grid 3", {"3", "density"});
+}
+
+TEST_F(BadInputTest, DensitiesThatAreNone) {
+  const auto with = [](float odd) {
+    return [odd](const Vec3i& p) { return p == Vec3i(1, -2, 3) ? odd : ball(p); };
+  };
+  const std::string rest = " -o picture.exr --size 8x8 --spp 1";
+  const std::vector<std::pair<const char*, float>> cases = {
+      {"nan.vdb", std::numeric_limits<float>::quiet_NaN()},
+      {"inf.vdb", std::numeric_limits<float>::infinity()},
+      {"negative.vdb", -0.5F}};
+  for (const auto& [name, value] : cases) {
+    write_cube(path(name), with(value));
+    expect_error(std::string("render ") + name + rest, {name, "density", "1, -2, 3"});
+  }
+  const Outcome clamped = run("render negative.vdb --negative clamp" + rest);
+  EXPECT_EQ(clamped.status, 0) << clamped;
+  EXPECT_NE(clamped.messages.find("freepath: warning: "), std::string::npos) << clamped;
+}
+
+TEST_F(BadInputTest, EnvironmentsThatAreNone) {
+  write_text(path("text.hdr"), "no picture at all");
+  write_environment(path("nan.exr"), 1, std::numeric_limits<float>::quiet_NaN());
+  write_environment(path("inf.exr"), 1, std::numeric_limits<float>::infinity());
+  write_environment(path("negative.exr"), 1, -1);
+  expect_render_error("--environment missing.hdr", {"missing.hdr"});
+  expect_render_error("--environment text.hdr", {"text.hdr"});
+  expect_render_error("--environment .", {"."});
+  for (const char* name : {"nan.exr", "inf.exr", "negative.exr"}) {
+    expect_render_error(std::string("--environment ") + name, {name, "5", "3"});
+  }
+}
+
+TEST_F(BadInputTest, OutputsThatCannotBe) {
+  std::filesystem::create_directory(path("folder.exr"));
+  const std::string render = "render ball.vdb --size 8x8 --spp 1 -o ";
+  expect_error(render + "missing/picture.exr", {"missing"});
+  expect_error(render + "picture.gif", {"picture.gif", ".exr"});
+  expect_error(render + "picture", {"picture", ".exr"});
+  expect_error(render + "folder.exr", {"folder.exr"});
+  expect_error(render + "picture.exr -o missing/picture.png", {"missing"});
+  expect_error(render + "picture.exr --stats missing/stats.json", {"missing/stats.json"});
+  expect_error(render + "picture.exr --stats folder.exr", {"folder.exr"});
+  expect_error(render + "picture.exr --stats picture.exr", {"picture.exr", "--stats"});
+  expect_error(render + "picture.exr --stats ball.vdb", {"ball.vdb", "--stats"});
+}
+
+TEST_F(BadInputTest, OldPicturesSurviveAnError) {
+  write_text(path("picture.exr"), "old");
+  expect_render_error("--grid smoke", {"smoke"});
+  EXPECT_EQ(std::filesystem::file_size(path("picture.exr")), 3U);
+}
+
+}  // namespace
+}  // namespace freepath::testing

@@ -1,0 +1,57 @@
+#pragma once
+/// @file Running the program as a user does: arguments in; exit status, output and files out.
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace freepath::testing {
+
+/// How a run of the program ended, and what it said.
+struct Outcome {
+  int status = -1;         ///< Exit status, -1 if it ended otherwise.
+  int signal = 0;          ///< The signal that ended it, 0 if none did.
+  bool timed_out = false;  ///< It was still running after the time allowed.
+  std::string output;      ///< Standard output.
+  std::string messages;    ///< Standard error.
+  double seconds = 0;
+};
+
+/// For a test's message.
+std::ostream& operator<<(std::ostream& stream, const Outcome& outcome);
+
+/// Words of a command line separated by blanks.
+std::vector<std::string> words(const std::string& line);
+
+/// Runs the program in a folder, its outputs kept apart, and waits for it; a run that takes longer
+/// than allowed is ended.
+Outcome run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                    std::chrono::seconds allowed = std::chrono::seconds(60));
+
+/// Runs the program with a terminal for its standard error. `on_text` is called with all that it
+/// has said there so far whenever it says something, and with the process.
+Outcome run_in_terminal(const std::vector<std::string>& arguments,
+                        const std::filesystem::path& folder,
+                        const std::function<void(const std::string&, int)>& on_text,
+                        std::chrono::seconds allowed = std::chrono::seconds(60));
+
+/// A folder of its own for each test, removed at its end.
+class ProgramTest : public ::testing::Test {
+ protected:
+  ProgramTest();
+  ~ProgramTest() override;
+
+  std::string path(const std::string& name) const { return folder_ / name; }
+  /// Runs a command line in the folder.
+  Outcome run(const std::string& line) const { return run_program(words(line), folder_); }
+  /// Names of the files in the folder, sorted.
+  std::vector<std::string> files() const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace freepath::testing

@@ -1,0 +1,65 @@
+#include "tests/apps/scene_files.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "freepath/io/image.h"
+#include "freepath/io/volume_write.h"
+
+namespace freepath::testing {
+
+namespace {
+
+constexpr int kEdge = 16;
+
+}  // namespace
+
+float ball(const Vec3i& voxel) {
+  const Vec3d offset = Vec3d(voxel) + Vec3d(0.5);
+  const double inside = 1 - offset.length2() / 64;
+  return inside > 0 ? static_cast<float>(2 * inside) : 0.0F;
+}
+
+void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density) {
+  Matrix4d index_to_world;
+  index_to_world.setScale(Vec3d(0.125));
+  write_cube(file, density, index_to_world);
+}
+
+void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density,
+                const Matrix4d& index_to_world) {
+  const Vec3i low(-kEdge / 2);
+  const Vec3i high(kEdge / 2 - 1);
+  BrickMapBuilder builder(low, high, 0);
+  for (int x = low.x; x <= high.x; ++x) {
+    for (int y = low.y; y <= high.y; ++y) {
+      for (int z = low.z; z <= high.z; ++z) {
+        const float value = density(Vec3i(x, y, z));
+        if (value != 0) builder.set_voxel(Vec3i(x, y, z), value);
+      }
+    }
+  }
+  Field field;
+  field.name = "density";
+  field.voxels = std::move(builder).finish();
+  field.index_to_world = index_to_world;
+  write_vdb(file, std::array<const Field*, 1>{&field});
+}
+
+void write_environment(const std::string& file, float value, float odd_value) {
+  Image image{.width = 16, .height = 8, .channels = {"R", "G", "B"}};
+  image.values.assign(image.pixel_count() * 3, value);
+  image.pixel(5, 3)[1] = odd_value;
+  write_exr(file, image);
+}
+
+void write_text(const std::string& file, const std::string& text) { std::ofstream(file) << text; }
+
+void truncate_file(const std::string& file, double part) {
+  const auto size = static_cast<double>(std::filesystem::file_size(file));
+  std::filesystem::resize_file(file, static_cast<uintmax_t>(size * part));
+}
+
+}  // namespace freepath::testing
