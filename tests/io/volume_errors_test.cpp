@@ -1,0 +1,246 @@
+// What can't be loaded: one clear message each, and never a crash.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "freepath/io/volume.h"
+#include "freepath/io/volume_write.h"
+#include "tests/io/volume_files.h"
+
+namespace freepath {
+namespace {
+
+using namespace testing_volumes;  // NOLINT(google-build-using-namespace)
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void expect_contains(const std::string& message, std::initializer_list<std::string_view> parts) {
+  for (const std::string_view part : parts) {
+    EXPECT_NE(message.find(part), message.npos) << "\"" << part << "\" is not in: " << message;
+  }
+}
+
+/// Writes a grid in both formats and returns the loader's messages.
+std::vector<std::string> messages_for(const TestGrid& grid, const LoadOptions& options = {}) {
+  const TemporaryFolder folder;
+  write_vdb_file(folder / "a.vdb", {grid});
+  write_nvdb_file(folder / "a.nvdb", {grid});
+  return {error_of([&] { load_field(folder / "a.vdb", options); }),
+          error_of([&] { load_field(folder / "a.nvdb", options); })};
+}
+
+TEST(VolumeErrors, MissingFileDirectoryEmptyFileAndOtherFormats) {
+  const TemporaryFolder folder;
+  const auto load = [&](const char* name) {
+    return error_of([&] { load_field(folder / name); });
+  };
+  expect_contains(load("none.vdb"), {"none.vdb", "no such file"});
+  expect_contains(error_of([&] { load_field(folder.path()); }), {"is a directory"});
+  write_bytes(folder / "empty.vdb", {});
+  expect_contains(load("empty.vdb"), {"empty.vdb", "is empty"});
+  write_bytes(folder / "text.vdb", Bytes(100, 'x'));
+  expect_contains(load("text.vdb"), {"text.vdb", "is not a volume file"});
+  write_bytes(folder / "short.vdb", Bytes(3, 'x'));
+  expect_contains(load("short.vdb"), {"is not a volume file"});
+}
+
+TEST(VolumeErrors, TheFormatIsToldByContentNotByName) {
+  const TemporaryFolder folder;
+  write_nvdb_file(folder / "nano.vdb", {sample_grid()});
+  EXPECT_NO_THROW(load_field(folder / "nano.vdb"));
+  write_vdb_file(folder / "open.nvdb", {sample_grid()});
+  EXPECT_NO_THROW(load_field(folder / "open.nvdb"));
+}
+
+TEST(VolumeErrors, LevelSetsPointsVectorsFrustumsAndEmptyGrids) {
+  const TemporaryFolder folder;
+  TestGrid level_set = sample_grid();
+  level_set.level_set = true;
+  level_set.background = 3;
+  for (const std::string& message : messages_for(level_set)) {
+    expect_contains(message, {"grid \"density\"", "level set", "fog volume"});
+  }
+  write_vdb_points(folder / "points.vdb");
+  expect_contains(error_of([&] { load_field(folder / "points.vdb"); }),
+                  {"grid \"particles\"", "points"});
+  write_vdb_vectors(folder / "vectors.vdb");
+  expect_contains(error_of([&] { load_field(folder / "vectors.vdb"); }),
+                  {"grid \"velocity\"", "vec3s"});
+  write_nvdb_vectors(folder / "vectors.nvdb");
+  expect_contains(error_of([&] { load_field(folder / "vectors.nvdb"); }),
+                  {"grid \"velocity\"", "vec3f"});
+  write_vdb_frustum(folder / "frustum.vdb");
+  expect_contains(error_of([&] { load_field(folder / "frustum.vdb"); }),
+                  {"grid \"density\"", "frustum"});
+  for (const std::string& message : messages_for(TestGrid{})) {
+    expect_contains(message, {"grid \"density\"", "no active voxels"});
+  }
+  for (const char* name : {"points.vdb", "vectors.vdb", "vectors.nvdb", "frustum.vdb"}) {
+    const auto grids = list_grids(folder / name);
+    ASSERT_EQ(grids.size(), 1U) << name;
+    EXPECT_FALSE(grids[0].loadable) << name;
+    EXPECT_FALSE(grids[0].reason.empty()) << name;
+  }
+}
+
+TEST(VolumeErrors, AFileWithoutGrids) {
+  const TemporaryFolder folder;
+  write_vdb_file(folder / "a.vdb", {});
+  expect_contains(error_of([&] { load_field(folder / "a.vdb"); }), {"a.vdb", "no grids"});
+  EXPECT_TRUE(list_grids(folder / "a.vdb").empty());
+}
+
+TEST(VolumeErrors, NanInfinityAndNegativeNameTheVoxel) {
+  const std::pair<double, const char*> cases[] = {
+      {kNan, "is NaN"}, {kInfinity, "is infinite"}, {-kInfinity, "is infinite"},
+      {-0.5, "is negative (-0.5)"}};
+  for (const auto& [value, text] : cases) {
+    TestGrid grid = sample_grid();
+    grid.voxels[3].value = value;
+    const Vec3i place = grid.voxels[3].place;
+    const std::string voxel = fmt::format("voxel ({}, {}, {}) ", place.x, place.y, place.z);
+    for (const std::string& message : messages_for(grid)) {
+      expect_contains(message, {"grid \"density\"", voxel, text});
+    }
+    TestGrid tiled;
+    tiled.tiles = {{Vec3i(64, 128, -8), 8, value}};
+    for (const std::string& message : messages_for(tiled)) {
+      expect_contains(message, {"voxel (64, 128, -8)", text});
+    }
+  }
+}
+
+TEST(VolumeErrors, DoublesOutOfTheRangeOfFloatNameTheVoxel) {
+  const TemporaryFolder folder;
+  TestGrid grid = sample_grid();
+  grid.voxels[5].value = 1e39;
+  write_vdb_file(folder / "a.vdb", {grid}, VdbValues::kDouble);
+  write_nvdb_file(folder / "a.nvdb", {grid}, NvdbValues::kDouble);
+  for (const char* name : {"a.vdb", "a.nvdb"}) {
+    expect_contains(error_of([&] { load_field(folder / name); }),
+                    {"voxel (-8, 256, 21)", "1e+39", "range of float"});
+  }
+}
+
+TEST(VolumeErrors, ClampingTakesNegativeAsZeroButNeverNan) {
+  const TemporaryFolder folder;
+  TestGrid grid = sample_grid();
+  grid.voxels[0].value = -1;
+  grid.voxels[9].value = -0.25;
+  grid.tiles[0].value = -2;  // 8³ voxels
+  write_vdb_file(folder / "a.vdb", {grid});
+  write_nvdb_file(folder / "a.nvdb", {grid});
+  LoadOptions options;
+  options.negative = NegativePolicy::kClamp;
+  for (const char* name : {"a.vdb", "a.nvdb"}) {
+    const LoadedField loaded = load_field(folder / name, options);
+    EXPECT_EQ(loaded.clamped_voxels, 2U + 512U) << name;
+    EXPECT_EQ(loaded.minimum, 0) << name;
+    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[0].place), 0);
+    EXPECT_EQ(loaded.field.voxels.value(grid.tiles[0].origin), 0);
+    ASSERT_EQ(loaded.warnings.size(), 1U);
+    expect_contains(loaded.warnings[0], {name, "density", "514 negative"});
+  }
+  grid.voxels[1].value = kNan;
+  for (const std::string& message : messages_for(grid, options)) {
+    expect_contains(message, {"is NaN"});
+  }
+}
+
+TEST(VolumeErrors, TheFirstBadVoxelIsNamedWhateverTheThreads) {
+  TestGrid grid;
+  for (int i = 0; i < 3000; ++i) grid.voxels.push_back({Vec3i(i, i, i), i % 7 == 3 ? -1.0 : 1.0});
+  const auto first = messages_for(grid);
+  for (int again = 0; again < 3; ++again) {
+    const auto next = messages_for(grid);
+    for (int format = 0; format < 2; ++format) {
+      const auto tail = [&](const std::string& message) { return message.substr(message.find(": grid")); };
+      EXPECT_EQ(tail(next[static_cast<std::size_t>(format)]),
+                tail(first[static_cast<std::size_t>(format)]));
+      expect_contains(next[static_cast<std::size_t>(format)], {"voxel (3, 3, 3)"});
+    }
+  }
+}
+
+/// A small file of each kind, for damaging.
+std::vector<std::filesystem::path> write_small_files(const TemporaryFolder& folder) {
+  TestGrid grid;
+  grid.voxels = {{Vec3i(0), 1.0}, {Vec3i(3, 2, 1), 2.0}, {Vec3i(-5, 4, 9), 0.5}};
+  grid.tiles = {{Vec3i(8, 0, 0), 8, 0.25}};
+  for (int i = 0; i < 200; ++i) grid.voxels.push_back({Vec3i(20 + i % 8, i / 8, 3), 0.01 * i});
+  std::vector<std::filesystem::path> files;
+  for (const Codec codec : {Codec::kNone, Codec::kZip, Codec::kBlosc}) {
+    const std::string number = std::to_string(static_cast<int>(codec));
+    files.push_back(folder / (number + ".vdb"));
+    write_vdb_file(files.back(), {grid}, VdbValues::kHalf, codec);
+    files.push_back(folder / (number + ".nvdb"));
+    write_nvdb_file(files.back(), {grid}, NvdbValues::kFpN, codec);
+  }
+  return files;
+}
+
+/// Loading must succeed or throw an Error; anything else fails the test or ends it.
+bool loads(const std::filesystem::path& path) {
+  try {
+    load_field(path);
+    list_grids(path);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+TEST(DamagedVolumes, EveryTruncationIsAnError) {
+  const TemporaryFolder folder;
+  for (const auto& path : write_small_files(folder)) {
+    const Bytes whole = read_bytes(path);
+    ASSERT_TRUE(loads(path)) << path;
+    // Every length near both ends, and some 100 between.
+    const std::size_t step = std::max<std::size_t>(1, whole.size() / 100);
+    for (std::size_t length = 1; length < whole.size();
+         length += length < 300 || length + 30 > whole.size() ? 1 : step) {
+      const std::filesystem::path cut = folder / "cut";
+      write_bytes(cut, Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)));
+      EXPECT_FALSE(loads(cut)) << path << " cut to " << length << " of " << whole.size();
+    }
+  }
+}
+
+TEST(DamagedVolumes, NoSingleByteMakesALoaderCrashOrHang) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kHeaders = 1100;  // the headers of file, grid and tree, every byte of them
+  constexpr int kFlips[] = {0x80, 0xFF, 0x01};
+  for (const auto& path : write_small_files(folder)) {
+    Bytes bytes = read_bytes(path);
+    const std::size_t step = std::max<std::size_t>(1, bytes.size() / 150);
+    for (std::size_t place = 0; place < bytes.size(); place += place < kHeaders ? 1 : step) {
+      const char whole = bytes[place];
+      bytes[place] = static_cast<char>(whole ^ kFlips[place % 3]);
+      write_bytes(folder / "damaged", bytes);
+      loads(folder / "damaged");
+      bytes[place] = whole;
+    }
+  }
+}
+
+TEST(DamagedVolumes, RandomBytesBehindAMagicNumberAreAnError) {
+  const TemporaryFolder folder;
+  uint32_t state = 1;
+  for (const std::string& magic : {std::string(" BDV\0\0\0\0", 8), std::string("NanoVDB0")}) {
+    for (int trial = 0; trial < 100; ++trial) {
+      Bytes bytes(magic.begin(), magic.end());
+      for (int i = 0; i < 2000; ++i) {
+        state = state * 1664525U + 1013904223U;
+        bytes.push_back(static_cast<char>(state >> 24));
+      }
+      write_bytes(folder / "noise", bytes);
+      EXPECT_FALSE(loads(folder / "noise"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace freepath
