@@ -1,6 +1,7 @@
 // freepath render: a volume file in, pictures out.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <string>
@@ -110,9 +111,23 @@ LightOptions read_lights(const Options& options) {
   return lights;
 }
 
+/// Refuses a picture that this machine's memory can't hold: it would end the program, or others.
+void check_memory(const PictureSize& size) {
+  constexpr double kBytesPerPixel = 170;  // sums of samples, and the picture made of them
+  constexpr double kGigabyte = 1e9;
+  const double needed = kBytesPerPixel * size.width * size.height;
+  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+  if (needed > 0.8 * present) {
+    fail("--size: a picture of {}x{} needs {:.0f} GB of memory, and this machine has {:.0f} GB; "
+         "choose a smaller one",
+         size.width, size.height, needed / kGigabyte, present / kGigabyte);
+  }
+}
+
 CameraOptions read_camera(const Options& options) {
   CameraOptions camera;
   const PictureSize size = parse_size(options.size, "--size");
+  check_memory(size);
   camera.width = size.width;
   camera.height = size.height;
   camera.fov = options.fov;
