@@ -43,9 +43,8 @@ std::vector<NamedMap> all_maps() {
   };
   std::vector<NamedMap> maps;
   maps.push_back({"noise", map_of(Vec3i(-7, 3, -20), Vec3i(21, 30, 9), hash_noise)});
-  maps.push_back({"noise on a pedestal", map_of(Vec3i(-30, -9, 1), Vec3i(9, 15, 16), [](auto& p) {
-                    return 5 + hash_noise(p);
-                  })});
+  maps.push_back({"noise on a pedestal", map_of(Vec3i(-30, -9, 1), Vec3i(9, 15, 16),
+                                                [](auto& p) { return 5 + hash_noise(p); })});
   maps.push_back({"sparse", map_of(Vec3i(-9), Vec3i(26), [](const Vec3i& p) {
                     const float noise = hash_noise(p);
                     return noise < 0.003F ? 1000 * noise : 0;
@@ -174,8 +173,8 @@ TEST(SuperVoxels, AreTheRangeOfTheirVoxelsGrownByOne) {
         const Vec3i low = cell * size + field.map.origin() - Vec3i(1);
         Vec3i high = low + Vec3i(size + 2);
         for (int axis = 0; axis < 3; ++axis) {
-          high[axis] = std::min(high[axis], field.map.origin()[axis] +
-                                                field.map.brick_counts()[axis] * 8 + 1);
+          high[axis] = std::min(high[axis],
+                                field.map.origin()[axis] + field.map.brick_counts()[axis] * 8 + 1);
         }
         float minimum = field.map.value(low);
         float maximum = minimum;
@@ -211,8 +210,8 @@ std::vector<int> brute_force_radius(const SuperVoxels& cells) {
     int nearest = std::numeric_limits<int>::max();
     for (const Vec3i& other : full) {
       const Vec3i apart = cell - other;
-      nearest = std::min(nearest,
-                         std::max({std::abs(apart.x), std::abs(apart.y), std::abs(apart.z)}));
+      nearest =
+          std::min(nearest, std::max({std::abs(apart.x), std::abs(apart.y), std::abs(apart.z)}));
     }
     radius.push_back(nearest);
   });
@@ -223,8 +222,8 @@ TEST(SuperVoxels, EmptyRadiusIsTheDistanceToTheNearestFullCell) {
   std::vector<NamedMap> maps = all_maps();
   // Few voxels in much space, so that radii get large.
   maps.push_back({"stars", make_field(Vec3i(0), Vec3i(70, 40, 55), [](const Vec3i& p) {
-                    return hash_noise(p) < 3e-5F ? 1.0F : 0.0F;
-                  })->voxels});
+                             return hash_noise(p) < 3e-5F ? 1.0F : 0.0F;
+                           })->voxels});
   for (const NamedMap& field : maps) {
     for (const int size : {4, 8, 16}) {
       const SuperVoxels cells = build(field.map, size);
@@ -245,9 +244,8 @@ TEST(SuperVoxels, EmptyRadiusIsTheDistanceToTheNearestFullCell) {
 TEST(SuperVoxels, KeepComponentsApartButAreEmptyOnlyWhereAllAre) {
   const Vec3i low(-3);
   const Vec3i high(40);
-  const BrickMap left = make_field(low, high, [](const Vec3i& p) {
-                          return p.x < 5 ? 1 + hash_noise(p) : 0;
-                        })->voxels;
+  const BrickMap left =
+      make_field(low, high, [](const Vec3i& p) { return p.x < 5 ? 1 + hash_noise(p) : 0; })->voxels;
   const BrickMap right = make_field(low, high, [](const Vec3i& p) {
                            return p.x > 32 ? 7 + hash_noise(p) : 0;
                          })->voxels;
@@ -286,9 +284,9 @@ TEST(SuperVoxels, AutomaticCellsAreOneOfTheSizes) {
   for (const NamedMap& field : all_maps()) {
     for (const float extinction : {0.0F, 0.1F, 1e30F}) {
       const SuperVoxels automatic = build(field.map, 0, extinction);
-      EXPECT_NE(std::find(std::begin(kSuperVoxelSizes), std::end(kSuperVoxelSizes),
-                          automatic.cell_size),
-                std::end(kSuperVoxelSizes))
+      EXPECT_NE(
+          std::find(std::begin(kSuperVoxelSizes), std::end(kSuperVoxelSizes), automatic.cell_size),
+          std::end(kSuperVoxelSizes))
           << field.name;
       const SuperVoxels chosen = build(field.map, automatic.cell_size);
       EXPECT_EQ(automatic.maxima, chosen.maxima) << field.name;

@@ -76,7 +76,8 @@ TEST(ParseMethod, AsksForAMissingValue) {
 }
 
 TEST(ParseMethod, RefusesWhatIsNoNumber) {
-  for (const char* text : {"", "x", "1x", "1 ", " 1", "+1", "1.0.0", "nan", "inf", "-inf", "1e99"}) {
+  for (const char* text :
+       {"", "x", "1x", "1 ", " 1", "+1", "1.0.0", "nan", "inf", "-inf", "1e99"}) {
     EXPECT_EQ(complaint(std::string("rich:roulette=") + text),
               "option 'roulette' of 'rich': '" + std::string(text) + "' is not a number");
   }
