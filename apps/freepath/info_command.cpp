@@ -85,8 +85,8 @@ Box3d world_bounds(const GridInfo& info) {
   for (int corner = 0; corner < 8; ++corner) {
     Vec3d point;
     for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = ((corner >> axis) & 1) != 0 ? info.active_max[axis] + 0.5
-                                                : info.active_min[axis] - 0.5;
+      point[axis] =
+          ((corner >> axis) & 1) != 0 ? info.active_max[axis] + 0.5 : info.active_min[axis] - 0.5;
     }
     box.extendBy(point * info.index_to_world);
   }
@@ -145,10 +145,9 @@ void print_grid(const Described& grid) {
     row("world bounds",
         fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", box.min.x, box.min.y,
                     box.min.z, box.max.x, box.max.y, box.max.z));
-    row("voxel bounds",
-        fmt::format("({}, {}, {}) to ({}, {}, {}), {} x {} x {}", info.active_min.x,
-                    info.active_min.y, info.active_min.z, info.active_max.x, info.active_max.y,
-                    info.active_max.z, size.x, size.y, size.z));
+    row("voxel bounds", fmt::format("({}, {}, {}) to ({}, {}, {}), {} x {} x {}", info.active_min.x,
+                                    info.active_min.y, info.active_min.z, info.active_max.x,
+                                    info.active_max.y, info.active_max.z, size.x, size.y, size.z));
     row("range", fmt::format("{:.6g} to {:.6g}", info.minimum, info.maximum));
     row("active", fmt::format("{} voxels, {} constant tiles among them", info.active_voxels,
                               info.active_tiles));
@@ -156,16 +155,15 @@ void print_grid(const Described& grid) {
   row("in the file", size_text(static_cast<double>(info.stored_bytes)));
   if (grid.loaded) {
     const BrickMap& map = grid.loaded->field.voxels;
-    row("in memory", fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
-                                 size_text(static_cast<double>(map.memory_bytes())),
-                                 map.brick_count() - 1));
+    row("in memory",
+        fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
+                    size_text(static_cast<double>(map.memory_bytes())), map.brick_count() - 1));
     const SuperVoxelFacts cells = super_voxel_facts(grid.loaded->field);
-    row("super-voxels",
-        fmt::format("{} x {} x {} of {} voxels a side, {:.1f} % occupied, {}", cells.counts.x,
-                    cells.counts.y, cells.counts.z, cells.cell_size,
-                    100.0 * static_cast<double>(cells.summary.occupied) /
-                        static_cast<double>(cells.summary.cells),
-                    size_text(static_cast<double>(cells.memory_bytes))));
+    row("super-voxels", fmt::format("{} x {} x {} of {} voxels a side, {:.1f} % occupied, {}",
+                                    cells.counts.x, cells.counts.y, cells.counts.z, cells.cell_size,
+                                    100.0 * static_cast<double>(cells.summary.occupied) /
+                                        static_cast<double>(cells.summary.cells),
+                                    size_text(static_cast<double>(cells.memory_bytes))));
     row("", fmt::format("of those occupied the mean maximum is {:.4g}, the mean minimum {:.4g}",
                         cells.summary.mean_maximum, cells.summary.mean_minimum));
     for (const std::string& warning : grid.loaded->warnings) row("warning", warning);
@@ -240,11 +238,11 @@ void for_each_grid(const Options& options, Use use) {
 void run(const Options& options) {
   if (options.json) {
     nlohmann::json json{{"file", options.file}, {"grids", nlohmann::json::array()}};
-    for_each_grid(options, [&](const Described& grid) { json["grids"].push_back(grid_json(grid)); });
+    for_each_grid(options,
+                  [&](const Described& grid) { json["grids"].push_back(grid_json(grid)); });
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}\n", options.file);
   for_each_grid(options, print_grid);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// @file Reading scalar fields from volume files: OpenVDB (.vdb) and NanoVDB (.nvdb). What a file is
-/// is told by its first bytes, not by its name.
+/// @file Reading scalar fields from volume files: OpenVDB (.vdb) and NanoVDB (.nvdb). What a file
+/// is is told by its first bytes, not by its name.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ struct GridInfo {
   int index = 0;           ///< Place in the file, from 0.
   std::string type;        ///< Of a voxel: "float", "half", "double", "Fp8", "vec3s", "points", ...
   std::string grid_class;  ///< "fog volume", "level set", "staggered" or "unknown".
-  Matrix4d index_to_world;           ///< Centre of voxel (i,j,k) is the index point (i,j,k).
+  Matrix4d index_to_world;              ///< Centre of voxel (i,j,k) is the index point (i,j,k).
   Vec3i active_min{0}, active_max{-1};  ///< Inclusive bounds of the active voxels [index].
   uint64_t active_voxels = 0;           ///< Those of active tiles included.
   uint64_t active_tiles = 0;            ///< Constant cubes of 8, 128 or 4096 voxels a side.
@@ -68,15 +68,15 @@ struct LoadedField {
   uint64_t clamped_voxels = 0;        ///< Negative ones set to 0.
   uint64_t active_voxels = 0;         ///< Those of active tiles included.
   uint64_t active_tiles = 0;
-  float minimum = 0, maximum = 0;     ///< Of the active values, after clamping.
+  float minimum = 0, maximum = 0;  ///< Of the active values, after clamping.
 };
 
 /// Reads one grid into a brick map, leaf by leaf and in parallel: at no time is the grid in memory
 /// twice. Inactive voxels are 0. Doubles are rounded to float.
 /// @throws Error, naming file, grid and voxel, if there is no such file or grid; the file is
-///   truncated or damaged; the grid is a level set, of points, not scalar or empty; its transform is
-///   not affine and invertible; or a value is NaN, infinite, out of the range of float, or negative
-///   (see NegativePolicy)
+///   truncated or damaged; the grid is a level set, of points, not scalar or empty; its transform
+///   is not affine and invertible; or a value is NaN, infinite, out of the range of float, or
+///   negative (see NegativePolicy)
 LoadedField load_field(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace freepath

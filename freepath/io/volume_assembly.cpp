@@ -61,13 +61,15 @@ void record_bad(ValueScan& scan, uint64_t place, const Vec3i& voxel, double valu
   const std::string voxel =
       fmt::format("{}: voxel ({}, {}, {})", where, bad.voxel.x, bad.voxel.y, bad.voxel.z);
   if (std::isnan(bad.value)) fail("{} is NaN; densities must be finite: repair the grid", voxel);
-  if (std::isinf(bad.value)) fail("{} is infinite; densities must be finite: repair the grid", voxel);
+  if (std::isinf(bad.value))
+    fail("{} is infinite; densities must be finite: repair the grid", voxel);
   if (std::abs(bad.value) > std::numeric_limits<float>::max()) {
     fail("{} is {}, out of the range of float: scale the grid down", voxel, bad.value);
   }
-  fail("{} is negative ({}); densities are 0 or more: repair the grid, or have negative ones taken "
-       "as 0 (--negative clamp)",
-       voxel, bad.value);
+  fail(
+      "{} is negative ({}); densities are 0 or more: repair the grid, or have negative ones taken "
+      "as 0 (--negative clamp)",
+      voxel, bad.value);
 }
 
 BrickMapBuilder make_builder(const VolumeLayout& layout) {
@@ -167,11 +169,12 @@ FieldAssembly::FieldAssembly(std::string where, const LoadOptions& options, Volu
     if (builder_) builder_->add_constant_bricks(first, first + Vec3i(tile.size / 8), value);
   }
   // Last, since the span holds until the next addition.
-  if (builder_) bricks_ = builder_->add_bricks([this] {
-    std::vector<Vec3i> bricks(layout_.leaves.size());
-    std::transform(layout_.leaves.begin(), layout_.leaves.end(), bricks.begin(), brick_of);
-    return bricks;
-  }());
+  if (builder_)
+    bricks_ = builder_->add_bricks([this] {
+      std::vector<Vec3i> bricks(layout_.leaves.size());
+      std::transform(layout_.leaves.begin(), layout_.leaves.end(), bricks.begin(), brick_of);
+      return bricks;
+    }());
 }
 
 ValueScan FieldAssembly::with_tiles(ValueScan scan) const {
@@ -191,8 +194,8 @@ LoadedField FieldAssembly::finish(std::string name, const Matrix4d& index_to_wor
   loaded.minimum = scan.minimum;
   loaded.maximum = scan.maximum;
   if (layout_.background != 0) {
-    loaded.warnings.push_back(fmt::format(
-        "{}: inactive voxels hold {}, but count as 0", where_, layout_.background));
+    loaded.warnings.push_back(
+        fmt::format("{}: inactive voxels hold {}, but count as 0", where_, layout_.background));
   }
   if (scan.negative_voxels > 0) {
     loaded.warnings.push_back(

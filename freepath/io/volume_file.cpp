@@ -50,7 +50,8 @@ void VolumeFile::require(uint64_t offset, uint64_t bytes) const {
 void VolumeFile::read(uint64_t offset, std::span<std::byte> bytes) const {
   require(offset, bytes.size());
   while (!bytes.empty()) {
-    const ssize_t count = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    const ssize_t count =
+        pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail("{}: reading failed: {}", name_, message_of_errno());
     if (count == 0) fail_damaged("it became shorter while it was read");

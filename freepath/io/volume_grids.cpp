@@ -14,8 +14,8 @@ namespace {
 std::string listed(const std::vector<GridInfo>& grids) {
   std::string list;
   for (const GridInfo& grid : grids) {
-    list += fmt::format("{}{} \"{}\" ({})", list.empty() ? "" : ", ", grid.index, grid.name,
-                        grid.type);
+    list +=
+        fmt::format("{}{} \"{}\" ({})", list.empty() ? "" : ", ", grid.index, grid.name, grid.type);
   }
   return list;
 }
@@ -118,9 +118,10 @@ std::string reason_against_type(const std::string& type) {
   if (type == "points") {
     return "it holds points, not densities; rasterise them first (VDB from Particles in Houdini)";
   }
-  return fmt::format("its voxels are of type {}; only float, half, double and the quantised floats "
-                     "of NanoVDB can be densities",
-                     type);
+  return fmt::format(
+      "its voxels are of type {}; only float, half, double and the quantised floats "
+      "of NanoVDB can be densities",
+      type);
 }
 
 }  // namespace io

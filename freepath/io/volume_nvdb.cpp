@@ -1,12 +1,5 @@
 // Reads .nvdb files. NanoVDB's structures give the layout of nodes and decode quantised values; the
-// file is walked here, since NanoVDB's reader trusts every offset and holds the grid as a whole.
-//
-// A file is a row of segments, each a header, metadata of its grids and the grids. A grid is its
-// header, the tree's header, the root with its tiles, then all upper nodes, all lower nodes and all
-// leaves, which refer to each other by relative offsets. All offsets point forward.
-
-#include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
+// tree is walked here, since NanoVDB's reader trusts every offset and holds the grid as a whole.
 
 #include <algorithm>
 #include <array>
@@ -14,169 +7,23 @@
 #include <memory>
 
 #include <nanovdb/NanoVDB.h>
-#include <nanovdb/util/IO.h>
 
 #include "freepath/base/error.h"
 #include "freepath/io/volume_assembly.h"
 #include "freepath/io/volume_formats.h"
-#include "freepath/io/volume_nvdb_bytes.h"
+#include "freepath/io/volume_nvdb_layout.h"
+#include "freepath/io/volume_pipeline.h"
 
 namespace freepath::io {
 namespace {
 
-constexpr uint64_t kBareGridMagic = 0x314244566f6e614eULL;  // "NanoVDB1"
-constexpr uint64_t kFileMagic = 0x324244566f6e614eULL;      // "NanoVDB2", of later 32.x
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
-
-/// A grid as the file's metadata announce it.
-struct NvdbGrid {
-  std::string name;
-  nanovdb::io::MetaData metadata;
-  NvdbExtent extent;
-};
-
-/// Memory for nodes, aligned as they are in a grid.
-struct alignas(NANOVDB_DATA_ALIGNMENT) NodeWords {
-  std::byte bytes[NANOVDB_DATA_ALIGNMENT];
-};
-class NodeBuffer {
- public:
-  std::span<std::byte> resize(std::size_t bytes) {
-    words_.resize((bytes + sizeof(NodeWords) - 1) / sizeof(NodeWords));
-    return {words_.data()->bytes, bytes};
-  }
-  template <class Node>
-  const Node& node(std::size_t offset) const {
-    return *reinterpret_cast<const Node*>(words_.data()->bytes + offset);
-  }
-
- private:
-  std::vector<NodeWords> words_;
-};
 
 /// A node or leaf that a parent refers to.
 struct NodePlace {
   uint64_t offset = 0;  ///< In the grid.
   Vec3i origin;         ///< First voxel.
 };
-
-void check_version(const VolumeFile& file, nanovdb::Version version) {
-  if (version.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER) {
-    fail("{}: NanoVDB version {}.{} can't be read, only {}.x; convert it again", file.name(),
-         version.getMajor(), version.getMinor(), NANOVDB_MAJOR_VERSION_NUMBER);
-  }
-}
-
-nanovdb::io::Header take_segment_header(FileCursor& cursor) {
-  const VolumeFile& file = cursor.file();
-  const auto header = cursor.take<nanovdb::io::Header>();
-  if (header.magic == nanovdb::io::reverseEndianness(NANOVDB_MAGIC_NUMBER)) {
-    fail("{}: it was written by a big-endian machine; convert it again", file.name());
-  }
-  if (header.magic == kBareGridMagic) {
-    fail("{}: it is the memory of a grid without a file header; write it with "
-         "nanovdb::io::writeGrid",
-         file.name());
-  }
-  if (header.magic != NANOVDB_MAGIC_NUMBER && header.magic != kFileMagic) {
-    file.fail_damaged(fmt::format("no segment begins at byte {}", cursor.offset() - sizeof(header)));
-  }
-  check_version(file, header.version);
-  return header;
-}
-
-std::vector<NvdbGrid> read_directory(const VolumeFile& file) {
-  std::vector<NvdbGrid> grids;
-  FileCursor cursor(file, 0);
-  while (cursor.offset() < file.size()) {
-    const auto header = take_segment_header(cursor);
-    const auto codec = static_cast<uint16_t>(header.codec);
-    if (codec > static_cast<uint16_t>(NvdbCodec::kBlosc)) {
-      file.fail_damaged(fmt::format("codec {} is unknown", codec));
-    }
-    const std::size_t first = grids.size();
-    for (int i = 0; i < header.gridCount; ++i) {
-      NvdbGrid grid;
-      grid.metadata = cursor.take<nanovdb::io::MetaData>();
-      const uint32_t length = grid.metadata.nameSize;
-      constexpr uint32_t kLongestName = 1 << 16;
-      if (length > kLongestName) file.fail_damaged(fmt::format("a name of {} bytes", length));
-      const auto* const name = reinterpret_cast<const char*>(cursor.peek(0, length).data());
-      grid.name.assign(name, strnlen(name, length));
-      cursor.skip(length);
-      grids.push_back(std::move(grid));
-    }
-    for (std::size_t i = first; i < grids.size(); ++i) {
-      const nanovdb::io::MetaData& metadata = grids[i].metadata;
-      grids[i].extent = {static_cast<NvdbCodec>(codec), cursor.offset(), metadata.fileSize,
-                         metadata.gridSize};
-      if (codec == 0 && metadata.fileSize != metadata.gridSize) {
-        file.fail_damaged(fmt::format("grid \"{}\" has two sizes", grids[i].name));
-      }
-      cursor.skip(metadata.fileSize);
-    }
-  }
-  return grids;
-}
-
-std::string value_type(const NvdbGrid& grid) {
-  using nanovdb::GridClass, nanovdb::GridType;
-  const GridClass grid_class = grid.metadata.gridClass;
-  if (grid_class == GridClass::PointIndex || grid_class == GridClass::PointData) return "points";
-  static constexpr std::array kNames{"unknown", "float",  "double", "int16",  "int32",
-                                     "int64",   "vec3f",  "vec3d",  "mask",   "half",
-                                     "uint32",  "bool",   "rgba8",  "Fp4",    "Fp8",
-                                     "Fp16",    "FpN",    "vec4f",  "vec4d",  "index"};
-  const auto type = static_cast<std::size_t>(grid.metadata.gridType);
-  return type < kNames.size() ? kNames[type] : fmt::format("number {}", type);
-}
-
-std::string class_name(nanovdb::GridClass grid_class) {
-  switch (grid_class) {
-    case nanovdb::GridClass::LevelSet:
-      return "level set";
-    case nanovdb::GridClass::FogVolume:
-      return "fog volume";
-    case nanovdb::GridClass::Staggered:
-      return "staggered";
-    default:
-      return "unknown";
-  }
-}
-
-struct GridHead {
-  Matrix4d index_to_world;
-  std::array<uint64_t, 4> node_offsets{};  ///< Of leaves, lower, upper nodes and root in the grid.
-};
-
-GridHead read_head(const VolumeFile& file, const NvdbGrid& grid, NvdbBytes& bytes) {
-  using nanovdb::GridData, nanovdb::TreeData;
-  NodeBuffer buffer;
-  bytes.read(0, buffer.resize(sizeof(GridData) + sizeof(TreeData<3>)));
-  const auto& data = buffer.node<GridData>(0);
-  const auto& tree = buffer.node<TreeData<3>>(sizeof(GridData));
-  const bool known = data.mMagic == NANOVDB_MAGIC_NUMBER || data.mMagic == kBareGridMagic;
-  if (!known || data.mGridSize != bytes.size() || data.mGridType != grid.metadata.gridType) {
-    file.fail_damaged(fmt::format("the header of grid \"{}\" contradicts the file's", grid.name));
-  }
-  check_version(file, data.mVersion);
-  GridHead head;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      head.index_to_world[row][column] = data.mMap.mMatD[3 * column + row];
-    }
-    head.index_to_world[3][row] = data.mMap.mVecD[row];
-  }
-  for (int level = 0; level < 4; ++level) {
-    const uint64_t offset = tree.mNodeOffset[level];
-    if (offset > bytes.size()) {
-      file.fail_damaged(fmt::format("grid \"{}\" refers to byte {} of {}", grid.name, offset,
-                                    bytes.size()));
-    }
-    head.node_offsets[level] = sizeof(GridData) + offset;
-  }
-  return head;
-}
 
 /// Walks from the root to the leaves of a grid, level by level.
 template <class Build>
@@ -241,8 +88,7 @@ class TreeWalk {
         children.push_back(
             {place.offset + static_cast<uint64_t>(node.mTable[entry].child), origin});
       } else {
-        layout.tiles.push_back(
-            {origin, EntrySize, static_cast<double>(node.mTable[entry].value)});
+        layout.tiles.push_back({origin, EntrySize, static_cast<double>(node.mTable[entry].value)});
       }
     }
   }
@@ -253,12 +99,11 @@ class TreeWalk {
     }
   }
 
-  /// Orders the nodes of a level as they stand in the file; they must not overlap each other or what
-  /// was read before.
+  /// Orders the nodes of a level as they stand in the file; they must not overlap each other or
+  /// what was read before.
   void sort_level(std::vector<NodePlace>& nodes, uint64_t node_size) {
-    std::sort(nodes.begin(), nodes.end(), [](const NodePlace& a, const NodePlace& b) {
-      return a.offset < b.offset;
-    });
+    std::sort(nodes.begin(), nodes.end(),
+              [](const NodePlace& a, const NodePlace& b) { return a.offset < b.offset; });
     for (const NodePlace& node : nodes) {
       check_alignment(node.offset);
       if (node.offset < end_ || node.offset > bytes_->size()) {
@@ -285,7 +130,8 @@ template <class Build>
 constexpr std::size_t largest_leaf() {
   using Leaf = typename nanovdb::NanoLeaf<Build>::DataType;
   constexpr std::size_t kWidestFpN = 16;  // bits a value
-  if constexpr (std::is_same_v<Build, nanovdb::FpN>) return sizeof(Leaf) + kLeafVoxels / 8 * kWidestFpN;
+  if constexpr (std::is_same_v<Build, nanovdb::FpN>)
+    return sizeof(Leaf) + kLeafVoxels / 8 * kWidestFpN;
   return sizeof(Leaf);
 }
 
@@ -351,26 +197,14 @@ ValueScan take_chunk(const VolumeFile& file, const LeafChunk& chunk,
 template <class Build>
 ValueScan read_leaves(const VolumeFile& file, NvdbBytes& bytes,
                       const std::vector<NodePlace>& leaves, const FieldAssembly& assembly) {
-  using tbb::filter_mode;
-  ValueScan total;
   std::size_t next = 0;
-  const auto read = [&](tbb::flow_control& control) {
-    auto chunk = read_chunk<Build>(bytes, leaves, next);
-    if (chunk) next = chunk->last;
-    if (!chunk) control.stop();
-    return chunk;
-  };
-  const auto decode = [&](const std::shared_ptr<LeafChunk>& chunk) {
-    return take_chunk<Build>(file, *chunk, leaves, assembly);
-  };
-  const auto merge = [&](const ValueScan& scan) { total.merge(scan); };
-  const std::size_t in_flight = 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  tbb::parallel_pipeline(
-      in_flight,
-      tbb::make_filter<void, std::shared_ptr<LeafChunk>>(filter_mode::serial_in_order, read) &
-          tbb::make_filter<std::shared_ptr<LeafChunk>, ValueScan>(filter_mode::parallel, decode) &
-          tbb::make_filter<ValueScan, void>(filter_mode::serial_out_of_order, merge));
-  return total;
+  return scan_chunks<LeafChunk>(
+      [&] {
+        auto chunk = read_chunk<Build>(bytes, leaves, next);
+        if (chunk) next = chunk->last;
+        return chunk;
+      },
+      [&](const LeafChunk& chunk) { return take_chunk<Build>(file, chunk, leaves, assembly); });
 }
 
 struct ReadGrid {
@@ -382,7 +216,7 @@ template <class Build>
 ReadGrid read_grid_as(const VolumeFile& file, const NvdbGrid& grid, const GridInfo& info,
                       const LoadOptions& options, bool keep_values) {
   NvdbBytes bytes(file, grid.extent);
-  const GridHead head = read_head(file, grid, bytes);
+  const NvdbHead head = read_nvdb_head(file, grid, bytes);
   TreeWalk<Build> walk(file, bytes);
   walk.read(head.node_offsets[3]);
   ReadGrid result;
@@ -423,14 +257,13 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file,
     GridInfo info;
     info.name = grid.name;
     info.index = static_cast<int>(infos.size());
-    info.type = value_type(grid);
-    info.grid_class = class_name(grid.metadata.gridClass);
+    info.type = nvdb_value_type(grid);
+    info.grid_class = nvdb_class_name(grid.grid_class);
     info.stored_bytes = grid.extent.stored_size;
     NvdbBytes bytes(file, grid.extent);
-    info.index_to_world = read_head(file, grid, bytes).index_to_world;
-    info.reason = reader_of(grid.metadata.gridType) != nullptr
-                      ? reason_against_class(info.grid_class)
-                      : reason_against_type(info.type);
+    info.index_to_world = read_nvdb_head(file, grid, bytes).index_to_world;
+    info.reason = reader_of(grid.type) != nullptr ? reason_against_class(info.grid_class)
+                                                  : reason_against_type(info.type);
     if (info.reason.empty()) info.reason = reason_against_transform(info.index_to_world);
     info.loadable = info.reason.empty();
     infos.push_back(std::move(info));
@@ -442,10 +275,10 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file,
 }  // namespace
 
 std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file) {
-  const std::vector<NvdbGrid> grids = read_directory(file);
+  const std::vector<NvdbGrid> grids = read_nvdb_directory(file);
   std::vector<GridInfo> infos = describe_directory(file, grids);
   for (std::size_t i = 0; i < grids.size(); ++i) {
-    const GridReader read = reader_of(grids[i].metadata.gridType);
+    const GridReader read = reader_of(grids[i].type);
     if (read == nullptr) continue;
     try {
       const ReadGrid result = read(file, grids[i], infos[i], {}, false);
@@ -458,12 +291,12 @@ std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file) {
 }
 
 LoadedField load_nvdb_field(const VolumeFile& file, const LoadOptions& options) {
-  const std::vector<NvdbGrid> grids = read_directory(file);
+  const std::vector<NvdbGrid> grids = read_nvdb_directory(file);
   const std::vector<GridInfo> infos = describe_directory(file, grids);
   const GridInfo& info = find_grid(file.name(), infos, options.selection);
   const NvdbGrid& grid = grids[static_cast<std::size_t>(info.index)];
   if (!info.loadable) fail("{}: {}", grid_place(file.name(), info.name), info.reason);
-  ReadGrid result = reader_of(grid.metadata.gridType)(file, grid, info, options, true);
+  ReadGrid result = reader_of(grid.type)(file, grid, info, options, true);
   return std::move(*result.assembly).finish(info.name, info.index_to_world, result.scan);
 }
 

@@ -132,7 +132,8 @@ void BloscBytes::release_before(uint64_t begin) {
       std::max(released_, BLOSC_MIN_HEADER_LENGTH + 4 * (chunk_size_ / block_size_ + 1));
   constexpr std::size_t kWorthIt = std::size_t{4} << 20;
   if (start < 0 || static_cast<std::size_t>(start) < first + kWorthIt) return;
-  release_pages(std::span(chunk_).first(std::min<std::size_t>(start, chunk_.size())).subspan(first));
+  release_pages(
+      std::span(chunk_).first(std::min<std::size_t>(start, chunk_.size())).subspan(first));
   released_ = static_cast<std::size_t>(start);
 }
 

@@ -1,9 +1,6 @@
 // Reads .vdb files. OpenVDB decodes values, masks and transforms; the tree is walked here, since
 // OpenVDB's own walk holds the whole grid in memory and trusts the file (see volume_vdb_layout.h).
 
-#include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -21,6 +18,7 @@
 #include "freepath/base/error.h"
 #include "freepath/io/volume_assembly.h"
 #include "freepath/io/volume_formats.h"
+#include "freepath/io/volume_pipeline.h"
 #include "freepath/io/volume_vdb_layout.h"
 
 namespace freepath::io {
@@ -152,8 +150,7 @@ class TopologyWalk {
     const auto children = mask_from<Mask>(cursor_.peek(0, kMaskBytes));
     const auto active = mask_from<Mask>(cursor_.peek(kMaskBytes, kMaskBytes));
     cursor_.skip(2 * kMaskBytes);
-    const uint64_t block =
-        vdb_value_block(cursor_, 0, format_, Mask::SIZE, active.countOn());
+    const uint64_t block = vdb_value_block(cursor_, 0, format_, Mask::SIZE, active.countOn());
     if (!active.isOff()) {
       std::vector<T> values(Mask::SIZE);
       decoder_.decode(cursor_.peek(0, block), active, std::span(values));
@@ -206,8 +203,8 @@ class ChunkReader {
     const uint64_t begin = cursor_.offset();
     while (leaf_ < leaves_ && cursor_.offset() - begin < kChunkBytes) {
       const auto mask = mask_from<LeafMask>(cursor_.peek(0, kLeafMaskBytes));
-      cursor_.skip(kLeafMaskBytes + vdb_value_block(cursor_, kLeafMaskBytes, format_, kLeafVoxels,
-                                                    mask.countOn()));
+      cursor_.skip(kLeafMaskBytes +
+                   vdb_value_block(cursor_, kLeafMaskBytes, format_, kLeafVoxels, mask.countOn()));
       chunk->ends.push_back(cursor_.offset() - begin);
       ++leaf_;
     }
@@ -246,26 +243,11 @@ ValueScan take_chunk(const LeafChunk& chunk, const VdbDirectory& directory, cons
 template <class T>
 ValueScan read_leaves(const VolumeFile& file, uint64_t offset, const VdbDirectory& directory,
                       const VdbGrid& grid, const FieldAssembly& assembly) {
-  using tbb::filter_mode;
   const VdbValueFormat format{grid.compression, sizeof(T), grid.half ? 2 : sizeof(T)};
   ChunkReader reader(file, offset, format, assembly.layout().leaves.size());
-  ValueScan total;
-  const auto read = [&](tbb::flow_control& control) {
-    auto chunk = reader.next();
-    if (!chunk) control.stop();
-    return chunk;
-  };
-  const auto decode = [&](const std::shared_ptr<LeafChunk>& chunk) {
-    return take_chunk<T>(*chunk, directory, grid, assembly);
-  };
-  const auto merge = [&](const ValueScan& scan) { total.merge(scan); };
-  const std::size_t in_flight = 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  tbb::parallel_pipeline(
-      in_flight,
-      tbb::make_filter<void, std::shared_ptr<LeafChunk>>(filter_mode::serial_in_order, read) &
-          tbb::make_filter<std::shared_ptr<LeafChunk>, ValueScan>(filter_mode::parallel, decode) &
-          tbb::make_filter<ValueScan, void>(filter_mode::serial_out_of_order, merge));
-  return total;
+  return scan_chunks<LeafChunk>(
+      [&] { return reader.next(); },
+      [&](const LeafChunk& chunk) { return take_chunk<T>(chunk, directory, grid, assembly); });
 }
 
 struct PlacedTransform {
@@ -280,13 +262,16 @@ PlacedTransform read_transform(const VolumeFile& file, const VdbDirectory& direc
   initialize_openvdb();
   PlacedTransform placed;
   if (grid.transform_type == openvdb::math::NonlinearFrustumMap::mapType()) {
-    placed.reason = "its transform is a frustum, not affine; resample it into an affine grid "
-                    "(openvdb::tools::resampleToMatch)";
+    placed.reason =
+        "its transform is a frustum, not affine; resample it into an affine grid "
+        "(openvdb::tools::resampleToMatch)";
     return placed;
   }
   if (!openvdb::math::MapRegistry::isRegistered(grid.transform_type)) {
-    placed.reason = fmt::format("its transform is of the unknown type \"{}\"; the file is damaged "
-                                "or made by a newer OpenVDB", grid.transform_type);
+    placed.reason = fmt::format(
+        "its transform is of the unknown type \"{}\"; the file is damaged "
+        "or made by a newer OpenVDB",
+        grid.transform_type);
     return placed;
   }
   constexpr std::size_t kLongest = 1024;  // twice the longest affine map

@@ -97,9 +97,10 @@ uint32_t read_header(FileCursor& cursor, VdbDirectory& directory) {
   cursor.skip(kUuidBytes);
   read_metadata(cursor);
   if (!has_offsets) {
-    fail("{}: it was written as a stream, without a directory of its grids; save it as a file "
-         "(openvdb::io::File)",
-         name);
+    fail(
+        "{}: it was written as a stream, without a directory of its grids; save it as a file "
+        "(openvdb::io::File)",
+        name);
   }
   return cursor.take<uint32_t>();
 }
@@ -123,8 +124,8 @@ VdbDirectory read_vdb_directory(const VolumeFile& file) {
     if (!parent.empty()) {
       const auto found = places.find(parent);
       if (found == places.end()) {
-        file.fail_damaged(fmt::format("grid \"{}\" shares the tree of a grid that isn't there",
-                                      grid.name));
+        file.fail_damaged(
+            fmt::format("grid \"{}\" shares the tree of a grid that isn't there", grid.name));
       }
       const int shared = directory.grids[static_cast<std::size_t>(found->second)].tree_of;
       grid.tree_of = shared >= 0 ? shared : found->second;
@@ -168,8 +169,8 @@ uint64_t vdb_value_block(FileCursor& cursor, uint64_t ahead, const VdbValueForma
               word_at(header, 12) == length;
     }
     if (!sound) {
-      file.fail_damaged(fmt::format("the size of the values at byte {} is impossible",
-                                    cursor.offset() + ahead));
+      file.fail_damaged(
+          fmt::format("the size of the values at byte {} is impossible", cursor.offset() + ahead));
     }
     size += static_cast<uint64_t>(length < 0 ? -length : length);
   }

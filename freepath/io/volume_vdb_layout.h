@@ -1,7 +1,7 @@
 #pragma once
 /// @file The layout of an OpenVDB file: its directory of grids, and the extent of every block of
-/// values. OpenVDB's own reader trusts the sizes it finds in a file; here each is checked against the
-/// file and against what it must be, before the library is given the bytes.
+/// values. OpenVDB's own reader trusts the sizes it finds in a file; here each is checked against
+/// the file and against what it must be, before the library is given the bytes.
 ///
 /// A file is a header, then for each grid a descriptor and the grid: compression flags, metadata,
 /// transform, topology (all masks of the tree and the values of its inner nodes, depth first), and
@@ -18,15 +18,15 @@ namespace freepath::io {
 
 /// Where a grid stands, and what its metadata says.
 struct VdbGrid {
-  std::string name;       ///< As the grid was named.
-  std::string tree_type;  ///< "Tree_float_5_4_3".
-  bool half = false;      ///< Reals are stored in half precision.
-  int tree_of = -1;       ///< The grid whose tree this one shares, -1 for its own.
+  std::string name;             ///< As the grid was named.
+  std::string tree_type;        ///< "Tree_float_5_4_3".
+  bool half = false;            ///< Reals are stored in half precision.
+  int tree_of = -1;             ///< The grid whose tree this one shares, -1 for its own.
   uint64_t begin = 0, end = 0;  ///< Extent in the file [bytes].
-  uint32_t compression = 0;            ///< OpenVDB's flags.
-  std::string grid_class;              ///< "fog volume", "level set", "staggered" or "unknown".
-  uint64_t transform = 0;              ///< Offset of the transform; the topology follows it.
-  std::string transform_type;          ///< "UniformScaleMap", ...
+  uint32_t compression = 0;     ///< OpenVDB's flags.
+  std::string grid_class;       ///< "fog volume", "level set", "staggered" or "unknown".
+  uint64_t transform = 0;       ///< Offset of the transform; the topology follows it.
+  std::string transform_type;   ///< "UniformScaleMap", ...
 };
 
 struct VdbDirectory {

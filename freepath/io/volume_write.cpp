@@ -10,6 +10,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
+#include "freepath/io/volume_vdb_layout.h"
 
 namespace freepath {
 namespace {
@@ -93,6 +94,8 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
   metadata.insertMeta("creator", openvdb::StringMetadata(fmt::format("freepath {}", version())));
   file.write(grids, metadata);
   file.close();
+  // OpenVDB doesn't look whether the last bytes reached the disk; a full one cuts the file short.
+  io::read_vdb_directory(io::VolumeFile(path));
 }
 
 }  // namespace
@@ -103,15 +106,17 @@ void write_vdb(const std::filesystem::path& path, std::span<const Field* const> 
   if (std::filesystem::is_directory(path)) {
     fail("{}: is a directory; name the file to write", path.string());
   }
+  const std::filesystem::path folder = path.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+    fail("{}: can't be written: there is no folder {}", path.string(), folder.string());
+  }
   openvdb::initialize();
   const PartialFile partial(name_beside(path));
   try {
     openvdb::GridCPtrVec grids;
     for (const Field* field : fields) grids.push_back(grid_of(*field, options));
     write_grids(partial.path(), grids);
-  } catch (const openvdb::Exception& error) {
-    fail("{}: can't be written: {}", path.string(), error.what());
-  } catch (const std::ios_base::failure& error) {
+  } catch (const std::exception& error) {
     fail("{}: can't be written: {}", path.string(), error.what());
   }
   std::error_code status;

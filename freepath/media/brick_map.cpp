@@ -61,8 +61,9 @@ BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_ma
   for (int axis = 0; axis < 3; ++axis) {
     constexpr int kLimit = 1 << 29;
     if (active_min[axis] < -kLimit || active_max[axis] > kLimit) {
-      fail("voxel coordinates reach from {} to {}, more than {} away from the origin: crop the grid",
-           active_min[axis], active_max[axis], kLimit);
+      fail(
+          "voxel coordinates reach from {} to {}, more than {} away from the origin: crop the grid",
+          active_min[axis], active_max[axis], kLimit);
     }
     const int first = brick_of(active_min[axis] - 2);
     const int last = brick_of(active_max[axis] + 2);
@@ -71,7 +72,8 @@ BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_ma
     entries *= map_.brick_counts_[axis];
     if (entries > kMaxIndexEntries) {
       fail(
-          "the active voxels span {} x {} x {}, too many for a dense index of bricks: crop the grid "
+          "the active voxels span {} x {} x {}, too many for a dense index of bricks: crop the "
+          "grid "
           "or split it into several",
           active_max.x - active_min.x + 1, active_max.y - active_min.y + 1,
           active_max.z - active_min.z + 1);
@@ -92,8 +94,7 @@ uint32_t& BrickMapBuilder::entry(const Vec3i& brick) {
     }
   }
   const Vec3i& counts = map_.brick_counts_;
-  return map_
-      .index_[(static_cast<std::size_t>(place.x) * counts.y + place.y) * counts.z + place.z];
+  return map_.index_[(static_cast<std::size_t>(place.x) * counts.y + place.y) * counts.z + place.z];
 }
 
 void BrickMapBuilder::check_brick_count(std::size_t count) const {

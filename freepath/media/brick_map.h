@@ -12,8 +12,8 @@
 
 namespace freepath {
 
-/// A sparse grid of floats: a dense index of 8³ bricks over the active bounds, and all bricks in one
-/// array. Brick 0 is the empty one (all zero). A brick of one constant value is stored once.
+/// A sparse grid of floats: a dense index of 8³ bricks over the active bounds, and all bricks in
+/// one array. Brick 0 is the empty one (all zero). A brick of one constant value is stored once.
 ///
 /// The centre of voxel (i,j,k) is the point (i,j,k) of index space. The index covers the bounds of
 /// the active voxels grown by two on every side (or more), so that a tap of the trilinear filter
@@ -71,8 +71,8 @@ class BrickMapBuilder {
   /// The 512 voxels of a new brick, zero at first, to be written (offset 64x + 8y + z). The span is
   /// valid until the next call.
   std::span<float, BrickMap::kBrickVoxels> add_brick(const Vec3i& brick);
-  /// New bricks at different places, for threads to fill: the 512 voxels of bricks[i] start at i·512
-  /// of the result, zero at first. The span is valid until the next call.
+  /// New bricks at different places, for threads to fill: the 512 voxels of bricks[i] start at
+  /// i·512 of the result, zero at first. The span is valid until the next call.
   std::span<float> add_bricks(std::span<const Vec3i> bricks);
   /// Sets a whole brick to one value, stored once for each value.
   void add_constant_brick(const Vec3i& brick, float value);

@@ -10,8 +10,8 @@
 
 namespace freepath {
 
-/// Whole pages, all zero, aligned to 2 MiB if that large. Memory is taken as pages are first written,
-/// by the thread that writes them.
+/// Whole pages, all zero, aligned to 2 MiB if that large. Memory is taken as pages are first
+/// written, by the thread that writes them.
 /// @throws std::bad_alloc
 void* allocate_pages(std::size_t bytes);
 /// Gives back what allocate_pages(bytes) returned.

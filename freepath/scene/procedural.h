@@ -16,8 +16,8 @@ struct ProceduralOptions {
   std::function<void(double)> progress;
 };
 
-// Each stands on the plane y = 0 (up is +y), centred on the y axis; its longest side is 100 units of
-// the world. Densities are 0 to 1. The result depends on resolution and seed alone; finer voxels
+// Each stands on the plane y = 0 (up is +y), centred on the y axis; its longest side is 100 units
+// of the world. Densities are 0 to 1. The result depends on resolution and seed alone; finer voxels
 // show more detail of the same shape. All throw Error for a resolution out of range.
 
 /// A cumulus: flat base, billows upon billows, sharp edges. Field "density".

@@ -18,8 +18,8 @@ class Billows {
     for (float s = size_; s >= smallest_; s *= kLacunarity) total_ += s * steepness_;
   }
 
-  /// Depth below the surface with the bumps on it. A bump reaches as deep as twice its size, so that
-  /// deep points, and those that no bump can reach, are not worked out in full.
+  /// Depth below the surface with the bumps on it. A bump reaches as deep as twice its size, so
+  /// that deep points, and those that no bump can reach, are not worked out in full.
   /// @param depth below the surface without bumps [world]
   /// @param strength 0 to 1, scales the bumps
   float raise(const Vec3f& point, float depth, float strength) const {

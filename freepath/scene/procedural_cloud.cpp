@@ -1,5 +1,5 @@
-// A cumulus: towers of spheres on a common base, spheres on spheres, and round bumps of ever smaller
-// size on their surface, cut flat below where the air's moisture begins to condense.
+// A cumulus: towers of spheres on a common base, spheres on spheres, and round bumps of ever
+// smaller size on their surface, cut flat below where the air's moisture begins to condense.
 
 #include <algorithm>
 #include <array>
@@ -33,13 +33,13 @@ std::vector<Sphere> towers(Sequence& random) {
   const float turn = random.uniform(0, 6.2831853F);
   for (int tower = 0; tower <= kAround; ++tower) {
     const bool middle = tower == 0;
-    const float angle = turn + 6.2831853F / kAround * (static_cast<float>(tower) +
-                                                       random.uniform(-0.25F, 0.25F));
+    const float angle =
+        turn + 6.2831853F / kAround * (static_cast<float>(tower) + random.uniform(-0.25F, 0.25F));
     const float out = middle ? 0.1F : random.uniform(0.65F, 1.0F);
     Sphere sphere;
     sphere.radius = middle ? random.uniform(15, 18) : random.uniform(10, 14);
-    sphere.centre = Vec3f(30 * out * std::cos(angle), sphere.radius * 0.5F,
-                          17 * out * std::sin(angle));
+    sphere.centre =
+        Vec3f(30 * out * std::cos(angle), sphere.radius * 0.5F, 17 * out * std::sin(angle));
     const int floors = middle ? 3 : random.uniform() < 0.65F ? 2 : 1;
     for (int floor = 0; floor < floors; ++floor) {
       spheres.push_back(sphere);
@@ -85,10 +85,10 @@ float Cloud::density(const Vec3f& point, const SphereUnion& near) const {
   float depth = -rough;
   if (depth < kCore + kWarp) {
     const Vec3f coarse = point * 0.06F;
-    const Vec3f pushed = point + Vec3f(gradient_noise(coarse, seed + 2),
-                                       gradient_noise(coarse, seed + 3),
-                                       gradient_noise(coarse, seed + 4)) *
-                                     kWarp;
+    const Vec3f pushed =
+        point + Vec3f(gradient_noise(coarse, seed + 2), gradient_noise(coarse, seed + 3),
+                      gradient_noise(coarse, seed + 4)) *
+                    kWarp;
     // The base is smooth: bumps fade in above it.
     const float bumps = 0.25F + 0.75F * smooth_step(0, 9, height);
     depth = billows.raise(pushed, -near.distance(pushed), bumps);

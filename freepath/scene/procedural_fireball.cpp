@@ -40,9 +40,9 @@ struct Fireball {
   SphereUnion spheres;
   Billows billows;
   uint32_t seed;
-  float edge;     ///< Width of the soft border.
-  Vec3f centre;   ///< Of the explosion.
-  float size;     ///< Of its radius, about.
+  float edge;    ///< Width of the soft border.
+  Vec3f centre;  ///< Of the explosion.
+  float size;    ///< Of its radius, about.
 
   static constexpr float kWarp = 2.5F;
 
@@ -63,8 +63,8 @@ Fireball::Sample Fireball::at(const Vec3f& point, const SphereUnion& near) const
   const float inner = 1 - (point - centre).length() / size;
   const float eddies = fractal_noise(point * 0.09F, 4, 0.55F, seed + 5);
   const float crease = (rough - depth) / (billows.inward() + 1e-3F);
-  const float heat = 0.5F + 0.75F * inner + 0.5F * eddies + 0.55F * crease -
-                     0.3F * smooth_step(4, 0, depth);
+  const float heat =
+      0.5F + 0.75F * inner + 0.5F * eddies + 0.55F * crease - 0.3F * smooth_step(4, 0, depth);
   const float hot = smooth_step(0, 1, heat);
   Sample sample;
   sample.temperature = kCoolest + (kHottest - kCoolest) * hot;
@@ -101,8 +101,7 @@ std::vector<Field> generate_fireball(const ProceduralOptions& options) {
   const float border = billows.outward() + Fireball::kWarp;
   const Box3f raw = spheres.bounds();
   const Vec3f raw_size = raw.max - raw.min;
-  const float scale =
-      (kLongestSide - 2 * border) / std::max({raw_size.x, raw_size.y, raw_size.z});
+  const float scale = (kLongestSide - 2 * border) / std::max({raw_size.x, raw_size.y, raw_size.z});
   const Vec3f middle = (raw.min + raw.max) * (0.5F * scale);
   const Vec3f offset(-middle.x, border - raw.min.y * scale, -middle.z);
   spheres.transform(scale, offset);
@@ -111,8 +110,10 @@ std::vector<Field> generate_fireball(const ProceduralOptions& options) {
   box.max += Vec3f(border);
   const GridShape shape = grid_over(box, options.resolution);
   const Vec3f size = box.max - box.min;
-  const Fireball fireball{std::move(spheres),   billows,
-                          seed,                 std::max(1.0F, 1.5F * voxel),
+  const Fireball fireball{std::move(spheres),
+                          billows,
+                          seed,
+                          std::max(1.0F, 1.5F * voxel),
                           Vec3f(0, 2 * scale, 0) + offset,
                           0.45F * std::max({size.x, size.y, size.z})};
   const std::string names[] = {"density", "temperature"};

@@ -52,8 +52,7 @@ Bounds bounds_of(std::span<const Vec3i> bricks, std::span<const float> values) {
   for (std::size_t i = 0; i < bricks.size(); ++i) {
     for (int offset = 0; offset < kVoxels; ++offset) {
       if (values[i * kVoxels + static_cast<std::size_t>(offset)] == 0) continue;
-      const Vec3i voxel =
-          bricks[i] * kSide + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
+      const Vec3i voxel = bricks[i] * kSide + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
       for (int axis = 0; axis < 3; ++axis) {
         bounds.low[axis] = std::min(bounds.low[axis], voxel[axis]);
         bounds.high[axis] = std::max(bounds.high[axis], voxel[axis]);

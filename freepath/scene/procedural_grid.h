@@ -28,9 +28,9 @@ GridShape grid_over(const Box3f& box, int resolution);
 
 /// 8³ voxels to be sampled.
 struct BrickPlace {
-  Vec3i first;        ///< First voxel.
-  Vec3f centre;       ///< World.
-  float radius = 0;   ///< Of the sphere around all its voxel centres [world].
+  Vec3i first;       ///< First voxel.
+  Vec3f centre;      ///< World.
+  float radius = 0;  ///< Of the sphere around all its voxel centres [world].
 };
 
 /// Fills the values of a brick, 512 for each field one after the other, zero at first. False: it is

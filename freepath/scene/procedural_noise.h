@@ -1,6 +1,6 @@
 #pragma once
-/// @file Noise made of hashes: a function of position and seed alone, without tables or state, hence
-/// the same on any number of threads.
+/// @file Noise made of hashes: a function of position and seed alone, without tables or state,
+/// hence the same on any number of threads.
 
 #include <cmath>
 #include <cstdint>

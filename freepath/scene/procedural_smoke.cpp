@@ -101,7 +101,8 @@ struct Smoke {
     if (out > 1.6F) return 0;
     // Puffs: the source pulses, and tears as it cools.
     const Vec3f stretched = source * Vec3f(1, 0.75F, 1);
-    const float puffs = fractal_noise(stretched * (1.1F / wide) + Vec3f(0, 3, 0), 2, 0.5F, seed + 3);
+    const float puffs =
+        fractal_noise(stretched * (1.1F / wide) + Vec3f(0, 3, 0), 2, 0.5F, seed + 3);
     const float detail = fractal_noise(stretched * 0.22F, octaves, 0.58F, seed + 4);
     const float shape = 1 - out + 0.75F * puffs + 0.55F * detail;
     const float thin = 1 - 0.8F * smooth_step(10, kLongestSide, height);

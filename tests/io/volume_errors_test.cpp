@@ -34,9 +34,7 @@ std::vector<std::string> messages_for(const TestGrid& grid, const LoadOptions& o
 
 TEST(VolumeErrors, MissingFileDirectoryEmptyFileAndOtherFormats) {
   const TemporaryFolder folder;
-  const auto load = [&](const char* name) {
-    return error_of([&] { load_field(folder / name); });
-  };
+  const auto load = [&](const char* name) { return error_of([&] { load_field(folder / name); }); };
   expect_contains(load("none.vdb"), {"none.vdb", "no such file"});
   expect_contains(error_of([&] { load_field(folder.path()); }), {"is a directory"});
   write_bytes(folder / "empty.vdb", {});
@@ -94,9 +92,10 @@ TEST(VolumeErrors, AFileWithoutGrids) {
 }
 
 TEST(VolumeErrors, NanInfinityAndNegativeNameTheVoxel) {
-  const std::pair<double, const char*> cases[] = {
-      {kNan, "is NaN"}, {kInfinity, "is infinite"}, {-kInfinity, "is infinite"},
-      {-0.5, "is negative (-0.5)"}};
+  const std::pair<double, const char*> cases[] = {{kNan, "is NaN"},
+                                                  {kInfinity, "is infinite"},
+                                                  {-kInfinity, "is infinite"},
+                                                  {-0.5, "is negative (-0.5)"}};
   for (const auto& [value, text] : cases) {
     TestGrid grid = sample_grid();
     grid.voxels[3].value = value;
@@ -157,7 +156,9 @@ TEST(VolumeErrors, TheFirstBadVoxelIsNamedWhateverTheThreads) {
   for (int again = 0; again < 3; ++again) {
     const auto next = messages_for(grid);
     for (int format = 0; format < 2; ++format) {
-      const auto tail = [&](const std::string& message) { return message.substr(message.find(": grid")); };
+      const auto tail = [&](const std::string& message) {
+        return message.substr(message.find(": grid"));
+      };
       EXPECT_EQ(tail(next[static_cast<std::size_t>(format)]),
                 tail(first[static_cast<std::size_t>(format)]));
       expect_contains(next[static_cast<std::size_t>(format)], {"voxel (3, 3, 3)"});
@@ -168,7 +169,7 @@ TEST(VolumeErrors, TheFirstBadVoxelIsNamedWhateverTheThreads) {
 /// A small file of each kind, for damaging.
 std::vector<std::filesystem::path> write_small_files(const TemporaryFolder& folder) {
   TestGrid grid;
-  grid.voxels = {{Vec3i(0), 1.0}, {Vec3i(3, 2, 1), 2.0}, {Vec3i(-5, 4, 9), 0.5}};
+  grid.voxels = {{Vec3i(0), 1.0}, {Vec3i(3, 2, 1), 2.0}, {Vec3i(5, 4, 9), 0.5}};
   grid.tiles = {{Vec3i(8, 0, 0), 8, 0.25}};
   for (int i = 0; i < 200; ++i) grid.voxels.push_back({Vec3i(20 + i % 8, i / 8, 3), 0.01 * i});
   std::vector<std::filesystem::path> files;

@@ -174,9 +174,9 @@ void write_vdb_points(const std::filesystem::path& path) {
   const std::vector<openvdb::Vec3R> positions{{0, 0, 0}, {1, 2, 3}};
   const openvdb::points::PointAttributeVector<openvdb::Vec3R> wrapper(positions);
   const auto transform = openvdb::math::Transform::createLinearTransform(0.5);
-  auto grid = openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
-                                                   openvdb::points::PointDataGrid>(positions,
-                                                                                   *transform);
+  auto grid =
+      openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
+                                           openvdb::points::PointDataGrid>(positions, *transform);
   grid->setName("particles");
   write_openvdb(path, {grid}, Codec::kBlosc);
 }

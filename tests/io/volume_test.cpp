@@ -75,8 +75,8 @@ TEST(NvdbRoundTrip, EveryTypeUnderEveryCodec) {
   const TestGrid grid = sample_grid();
   // Quantised leaves span up to 8 in value, hence steps of 8/15, 8/255 and 8/65535.
   const std::pair<NvdbValues, double> types[] = {
-      {NvdbValues::kFloat, 1e-7},       {NvdbValues::kDouble, 1e-7}, {NvdbValues::kFp4, 8.0 / 15},
-      {NvdbValues::kFp8, 8.0 / 255},    {NvdbValues::kFp16, 1e-3},   {NvdbValues::kFpN, 0.1}};
+      {NvdbValues::kFloat, 1e-7},    {NvdbValues::kDouble, 1e-7}, {NvdbValues::kFp4, 8.0 / 15},
+      {NvdbValues::kFp8, 8.0 / 255}, {NvdbValues::kFp16, 1e-3},   {NvdbValues::kFpN, 0.1}};
   for (const Codec codec : {Codec::kNone, Codec::kZip, Codec::kBlosc}) {
     for (const auto& [values, tolerance] : types) {
       write_nvdb_file(folder / "a.nvdb", {grid}, values, codec);
@@ -95,8 +95,7 @@ TEST(VolumeTransforms, RotatedMirroredAnisotropicAndShearedSurvive) {
   const TemporaryFolder folder;
   const double c = std::cos(0.7), s = std::sin(0.7);
   const Matrix4d matrices[] = {
-      Matrix4d(),
-      Matrix4d(2, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 3, 0, 1, 2, 3, 1),
+      Matrix4d(), Matrix4d(2, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 3, 0, 1, 2, 3, 1),
       Matrix4d(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1),
       Matrix4d(c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 0, 0, 7, 1),
       Matrix4d(0.1, 0.02, 0, 0, 0, 0.1, 0.03, 0, 0, 0, 0.1, 0, -9, 4, 2, 1)};

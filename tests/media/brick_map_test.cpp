@@ -97,7 +97,8 @@ TEST(BrickMap, InterpolationIsExactForATrilinearFunction) {
     }
   }
   const BrickMap map = std::move(builder).finish();
-  for (const Vec3d& p : {Vec3d(0.25, 0.5, 0.75), Vec3d(-7.5, 7.9, -0.1), Vec3d(7.999, -8.25, 3.5)}) {
+  for (const Vec3d& p :
+       {Vec3d(0.25, 0.5, 0.75), Vec3d(-7.5, 7.9, -0.1), Vec3d(7.999, -8.25, 3.5)}) {
     EXPECT_NEAR(map.interpolate(p), function(p), 1e-4);
   }
 }
