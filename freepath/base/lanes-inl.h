@@ -56,6 +56,53 @@ HWY_INLINE void assign(VecI& target, MaskF mask, VecI value) {
   target = hn::IfThenElse(int_mask(mask), value, target);
 }
 
+/// Deals the elements of arrays out to chosen lanes: the n-th of those lanes gets the n-th element.
+class Dealer {
+ public:
+  explicit Dealer(uint32_t lanes) : lanes_(mask_of(lanes)), indices_(ranks(lanes)) {}
+
+  /// `values` in the chosen lanes of a row, the others as they are. Reads kLanes values.
+  HWY_INLINE void deal(const float* values, float* row) const {
+    hn::Store(hn::IfThenElse(lanes_, dealt(hn::LoadU(kFloat, values)), hn::Load(kFloat, row)),
+              kFloat, row);
+  }
+  HWY_INLINE void deal(const int32_t* values, int32_t* row) const {
+    const VecI dealt_values = hn::BitCast(kInt, dealt(hn::BitCast(kFloat, hn::LoadU(kInt, values))));
+    hn::Store(hn::IfThenElse(int_mask(lanes_), dealt_values, hn::Load(kInt, row)), kInt, row);
+  }
+  HWY_INLINE void deal(const uint32_t* values, uint32_t* row) const {
+    deal(reinterpret_cast<const int32_t*>(values), reinterpret_cast<int32_t*>(row));
+  }
+  /// One value in the chosen lanes of a row.
+  HWY_INLINE void fill(float value, float* row) const {
+    hn::Store(hn::IfThenElse(lanes_, hn::Set(kFloat, value), hn::Load(kFloat, row)), kFloat, row);
+  }
+  /// first, first + 1, ... in the chosen lanes of a row.
+  HWY_INLINE void count_from(uint32_t first, uint32_t* row) const {
+    HWY_ALIGN_MAX uint32_t numbers[kLanes];
+    hn::Store(hn::Iota(kUint, first), kUint, numbers);
+    deal(numbers, row);
+  }
+  HWY_INLINE void clear(uint32_t* row) const {
+    hn::Store(hn::IfThenZeroElse(uint_mask(lanes_), hn::Load(kUint, row)), kUint, row);
+  }
+
+ private:
+  using Indices = decltype(hn::IndicesFromVec(kFloat, hn::Zero(kInt)));
+
+  /// How many of the chosen lanes come before each lane.
+  static HWY_INLINE Indices ranks(uint32_t lanes) {
+    const VecU one = hn::Set(kUint, 1);
+    const VecU before = hn::Sub(hn::Shl(one, hn::Iota(kUint, 0U)), one);
+    const VecU rank = hn::PopulationCount(hn::And(hn::Set(kUint, lanes), before));
+    return hn::IndicesFromVec(kFloat, hn::BitCast(kInt, rank));
+  }
+  HWY_INLINE VecF dealt(VecF values) const { return hn::TableLookupLanes(values, indices_); }
+
+  MaskF lanes_;
+  Indices indices_;
+};
+
 HWY_INLINE VecF set(float value) { return hn::Set(kFloat, value); }
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -53,12 +53,12 @@ class FieldSum {
     }
   }
 
-  HWY_INLINE Bounds bounds(VecI cell) const {
+  /// @param record place of the super-voxel's record in Medium::walk_cells()
+  HWY_INLINE Bounds bounds(VecI record) const {
     Bounds bounds;
     for (int channel = 0; channel < N; ++channel) bounds.majorant[channel] = hn::Zero(kFloat);
-    const VecI first = hn::Mul(cell, hn::Set(kInt, medium_.component_count));
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF density = hn::GatherIndex(kFloat, medium_.maxima + k, first);
+      const VecF density = hn::GatherIndex(kFloat, medium_.cells + k, record);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
         const float sigma_t = component.sigma_a[channel] + component.sigma_s[channel];

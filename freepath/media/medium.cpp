@@ -53,6 +53,20 @@ double voxel_edge(const Matrix4d& index_to_world) {
   return std::cbrt(std::abs(index_to_world.determinant()));
 }
 
+/// @return Medium::walk_cells()
+std::vector<float> interleave(const SuperVoxels& cells) {
+  const std::size_t components = cells.components;
+  std::vector<float> records;
+  records.reserve(cells.cell_count() * (components + 1));
+  for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
+    for (std::size_t k = 0; k < components; ++k) {
+      records.push_back(cells.maxima[cell * components + k]);
+    }
+    records.push_back(static_cast<float>(cells.empty_radius[cell]));
+  }
+  return records;
+}
+
 }  // namespace
 
 Medium::Medium(std::vector<Component> components, int super_voxel,
@@ -71,6 +85,7 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
         static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
   }
   super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
+  walk_cells_ = interleave(super_voxels_);
 
   if (!world_to_index) {
     const double determinant = index_to_world.determinant();

@@ -14,9 +14,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
     view.bounds_max[axis] = bounds.max[axis];
   }
   view.cell_size = cells.cell_size;
-  view.minima = cells.minima.data();
-  view.maxima = cells.maxima.data();
-  view.empty_radius = cells.empty_radius.data();
+  view.cells = medium.walk_cells().data();
   view.world_to_walk = medium.world_to_walk();
   view.interpolation = interpolation;
   view.component_count = static_cast<int>(medium.components().size());

@@ -8,6 +8,8 @@
 #define FREEPATH_MEDIA_SEGMENTS_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
+
 #include "freepath/base/lanes-inl.h"
 #include "freepath/media/medium_view.h"
 
@@ -22,6 +24,7 @@ struct SegmentCursor {
   VecF t;             ///< Distance from the origin [world].
   VecF end;           ///< Where the ray leaves the medium or ends [world].
   VecI cell[3];       ///< Super-voxel that holds the point at t.
+  VecI record;        ///< Place of its record in Medium::walk_cells().
 };
 
 /// The same in memory, one row a lane.
@@ -32,11 +35,12 @@ struct SegmentState {
   HWY_ALIGN_MAX float t[kLanes];
   HWY_ALIGN_MAX float end[kLanes];
   HWY_ALIGN_MAX int32_t cell[3][kLanes];
+  HWY_ALIGN_MAX int32_t record[kLanes];
 };
 
 /// A segment: the part of a ray in one super-voxel, or in one empty cube of them.
 struct Segment {
-  VecI index;   ///< Entry of the super-voxel in its arrays.
+  VecI record;  ///< Place of the super-voxel's record in Medium::walk_cells().
   VecF exit;    ///< Where it ends [world].
   VecI low[3];  ///< First cell along each axis.
   VecI high[3]; ///< One past the last cell.
@@ -60,6 +64,7 @@ class SuperVoxelSegments {
     }
     cursor.t = hn::Load(kFloat, state.t);
     cursor.end = hn::Load(kFloat, state.end);
+    cursor.record = hn::Load(kInt, state.record);
     return cursor;
   }
 
@@ -67,18 +72,33 @@ class SuperVoxelSegments {
   HWY_INLINE void store(const Cursor& cursor, State& state) const {
     for (int axis = 0; axis < 3; ++axis) hn::Store(cursor.cell[axis], kInt, state.cell[axis]);
     hn::Store(cursor.t, kFloat, state.t);
+    hn::Store(cursor.record, kInt, state.record);
+  }
+
+  /// Puts the rays from slot `first` on into the dealer's lanes.
+  template <class Entry>
+  HWY_INLINE void refill(const Entry& entry, std::size_t first, const Dealer& dealer,
+                         State& state) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      dealer.deal(entry.origin[axis].data() + first, state.origin[axis]);
+      dealer.deal(entry.direction[axis].data() + first, state.direction[axis]);
+      dealer.deal(entry.inverse[axis].data() + first, state.inverse[axis]);
+      dealer.deal(entry.cell[axis].data() + first, state.cell[axis]);
+    }
+    dealer.deal(entry.length.data() + first, state.end);
+    dealer.fill(0.0F, state.t);
+    dealer.deal(entry.record.data() + first, state.record);
   }
 
   /// The segment at the cursor. Lanes outside the mask get entry 0 and no meaning.
   HWY_INLINE Segment segment(const Cursor& cursor, MaskF lanes) const {
     Segment s;
-    const VecI row = hn::Add(hn::Mul(cursor.cell[0], hn::Set(kInt, medium_.cell_counts[1])),
-                             cursor.cell[1]);
-    const VecI index =
-        hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])), cursor.cell[2]);
-    s.index = hn::IfThenElseZero(int_mask(lanes), index);
+    s.record = hn::IfThenElseZero(int_mask(lanes), cursor.record);
     const VecI one = hn::Set(kInt, 1);
-    const VecI radius = hn::Max(hn::GatherIndex(kInt, medium_.empty_radius, s.index), one);
+    const VecI radius = hn::Max(
+        hn::ConvertTo(kInt, hn::GatherIndex(kFloat, medium_.cells + medium_.component_count,
+                                            s.record)),
+        one);
     VecF exits[3];
     for (int axis = 0; axis < 3; ++axis) {
       s.low[axis] = hn::Sub(hn::Add(cursor.cell[axis], one), radius);
@@ -117,7 +137,16 @@ class SuperVoxelSegments {
       const VecI last_cell = hn::Set(kInt, medium_.cell_counts[axis] - 1);
       outside = hn::Or(outside, hn::Or(cursor.cell[axis], hn::Sub(last_cell, cursor.cell[axis])));
     }
-    return hn::AndNot(float_mask(hn::Lt(outside, hn::Zero(kInt))), lanes);
+    const MaskF inside = hn::AndNot(float_mask(hn::Lt(outside, hn::Zero(kInt))), lanes);
+    assign(cursor.record, lanes, hn::IfThenElseZero(int_mask(inside), record_of(cursor)));
+    return inside;
+  }
+
+  /// Asks for the records of the cells that a group has come to.
+  HWY_INLINE void prefetch(const State& state) const {
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      hwy::Prefetch(medium_.cells + state.record[lane]);
+    }
   }
 
   HWY_INLINE void position(const Cursor& cursor, VecF (&point)[3]) const {
@@ -127,6 +156,15 @@ class SuperVoxelSegments {
   }
 
  private:
+  /// Also computed where a ray enters (transport/entry-inl.h).
+  HWY_INLINE VecI record_of(const Cursor& cursor) const {
+    const VecI row = hn::Add(hn::Mul(cursor.cell[0], hn::Set(kInt, medium_.cell_counts[1])),
+                             cursor.cell[1]);
+    const VecI cell =
+        hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])), cursor.cell[2]);
+    return hn::Mul(cell, hn::Set(kInt, medium_.component_count + 1));
+  }
+
   static HWY_INLINE VecI floor_to_int(VecF value) {
     return hn::ConvertTo(kInt, hn::Floor(value));
   }

@@ -71,6 +71,7 @@ struct FlightStream {
 struct WalkScratch {
   std::array<std::vector<float>, 3> origin, direction, inverse;  ///< [walk space]
   std::array<std::vector<int32_t>, 3> cell;
+  std::vector<int32_t> record;        ///< Where the bounds of that cell stand.
   std::vector<float> begin, length;  ///< Entry of the medium, and how far from there to its end.
 };
 

@@ -91,6 +91,7 @@ class Walk {
     typename Medium::State lookup;
     HWY_ALIGN_MAX float tau[kLanes];    ///< Optical depth still to go to the tentative collision.
     HWY_ALIGN_MAX float rate[kLanes];   ///< Where it happened [1/m].
+    HWY_ALIGN_MAX float exit[kLanes];   ///< Of the segment it happened in [world].
     HWY_ALIGN_MAX float weight[N][kLanes];
     HWY_ALIGN_MAX float emitted[N][kLanes];
     HWY_ALIGN_MAX uint32_t words[3][kLanes];  ///< Random words for the collision to come.
@@ -151,21 +152,25 @@ class Walk {
     const MaskF searching = mask_of(group.searching);
     VecF tau = hn::Load(kFloat, group.tau);
     VecF rate = hn::Load(kFloat, group.rate);
+    VecF exit = hn::Load(kFloat, group.exit);
     statistics_.super_voxel_steps += static_cast<uint64_t>(std::popcount(group.searching));
     const auto segment = segments_.segment(cursor, searching);
-    const VecF rate_here = tracker_.rate(medium_.bounds(segment.index));
+    const VecF rate_here = tracker_.rate(medium_.bounds(segment.record));
     const VecF depth = hn::Mul(rate_here, hn::Sub(segment.exit, cursor.t));
     const MaskF hits = hn::And(searching, hn::Lt(tau, depth));
-    const VecF place = hn::Min(hn::Add(cursor.t, hn::Div(tau, rate_here)), segment.exit);
     const MaskF leaves = hn::AndNot(hits, searching);
+    // Where exactly, aim() finds out for all lanes at once.
     assign(rate, hits, rate_here);
+    assign(exit, hits, segment.exit);
     assign(tau, leaves, hn::Sub(tau, depth));
-    assign(cursor.t, searching, hn::IfThenElse(hits, place, segment.exit));
+    assign(cursor.t, leaves, segment.exit);
     const MaskF inside =
         segments_.leave(cursor, segment, hn::And(leaves, hn::Lt(segment.exit, cursor.end)));
     segments_.store(cursor, group.segments);
+    segments_.prefetch(group.segments);
     hn::Store(tau, kFloat, group.tau);
     hn::Store(rate, kFloat, group.rate);
+    hn::Store(exit, kFloat, group.exit);
     group.searching = bits_of(inside);
     group.colliding |= bits_of(hits);
     group.escaped |= bits_of(hn::AndNot(inside, leaves));
@@ -173,9 +178,15 @@ class Walk {
 
   /// Begins the look-ups of the lanes that have found their tentative collision.
   HWY_INLINE void aim(Group& group) {
+    auto cursor = segments_.load(group.segments);
+    const MaskF colliding = mask_of(group.colliding);
+    const VecF step = hn::Div(hn::Load(kFloat, group.tau), hn::Load(kFloat, group.rate));
+    const VecF place = hn::Min(hn::Add(cursor.t, step), hn::Load(kFloat, group.exit));
+    assign(cursor.t, colliding, place);
+    hn::Store(cursor.t, kFloat, group.segments.t);
     VecF point[3];
-    segments_.position(segments_.load(group.segments), point);
-    medium_.aim(point, mask_of(group.colliding), hn::Load(kUint, group.words[1]),
+    segments_.position(cursor, point);
+    medium_.aim(point, colliding, hn::Load(kUint, group.words[1]),
                 hn::Load(kUint, group.words[2]), group.lookup);
     group.drawing = group.scattered = group.absorbed = 0;
   }
@@ -267,44 +278,25 @@ class Walk {
     refill(group, done);
   }
 
-  /// Gives each of the lanes the next ray that meets the medium; the others have escaped already.
+  /// Gives each of the lanes the next ray of the stream.
   HWY_INLINE void refill(Group& group, uint32_t lanes) {
-    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
-      while (next_ray_ < rays_.size() && !(entry_.length[next_ray_] > 0)) miss(next_ray_++);
-      if (next_ray_ == rays_.size()) return;
-      const int lane = std::countr_zero(rest);
-      const std::size_t ray = next_ray_++;
-      for (int axis = 0; axis < 3; ++axis) {
-        group.segments.origin[axis][lane] = entry_.origin[axis][ray];
-        group.segments.direction[axis][lane] = entry_.direction[axis][ray];
-        group.segments.inverse[axis][lane] = entry_.inverse[axis][ray];
-        group.segments.cell[axis][lane] = entry_.cell[axis][ray];
-      }
-      group.segments.t[lane] = 0;
-      group.segments.end[lane] = entry_.length[ray];
-      for (int channel = 0; channel < N; ++channel) {
-        group.weight[channel][lane] = 1;
-        group.emitted[channel][lane] = 0;
-      }
-      group.pixel[lane] = rays_.pixel[ray];
-      group.sample[lane] = rays_.sample[ray];
-      group.stream[lane] = rays_.stream[ray];
-      group.block[lane] = 0;
-      group.ray[lane] = static_cast<uint32_t>(ray);
-      group.alive |= 1U << lane;
-      group.drawing |= 1U << lane;
-    }
-  }
-
-  HWY_INLINE void miss(std::size_t ray) {
-    flights_.t[ray] = rays_.t_max[ray];
-    flights_.event[ray] = Event::kEscape;
-    flights_.component[ray] = 0;
+    const std::size_t left = rays_.size() - next_ray_;
+    while (static_cast<std::size_t>(std::popcount(lanes)) > left) lanes &= lanes - 1;
+    if (lanes == 0) return;
+    const Dealer dealer(lanes);
+    segments_.refill(entry_, next_ray_, dealer, group.segments);
     for (int channel = 0; channel < N; ++channel) {
-      flights_.weight[channel][ray] = 1;
-      flights_.emitted[channel][ray] = 0;
+      dealer.fill(1.0F, group.weight[channel]);
+      dealer.fill(0.0F, group.emitted[channel]);
     }
-    flights_.lookups[ray] = 0;
+    dealer.deal(rays_.pixel.data() + next_ray_, group.pixel);
+    dealer.deal(rays_.sample.data() + next_ray_, group.sample);
+    dealer.deal(rays_.stream.data() + next_ray_, group.stream);
+    dealer.clear(group.block);
+    dealer.count_from(static_cast<uint32_t>(next_ray_), group.ray);
+    next_ray_ += static_cast<std::size_t>(std::popcount(lanes));
+    group.alive |= lanes;
+    group.drawing |= lanes;
   }
 
   const Tracker& tracker_;

@@ -23,8 +23,8 @@ HWY_INLINE VecF entry_inverse(VecF direction) {
 }
 
 /// Enters kLanes rays from slot `first` on. The origin moves to where a ray meets the bounds, so that
-/// a distant camera costs no precision inside. A ray that misses, or whose numbers are not finite,
-/// gets length 0.
+/// a distant camera costs no precision inside. A ray that misses, that has no direction, or whose
+/// numbers are not finite gets length 0.
 HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std::size_t first,
                            WalkScratch& scratch) {
   VecF world_origin[3];
@@ -55,11 +55,23 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
     begin = hn::Max(begin, hn::Min(to_low, to_high));
     end = hn::Min(end, hn::Max(to_low, to_high));
   }
-  // A comparison with NaN is false, so rays that are not finite miss.
-  const MaskF meets = hn::And(hn::Lt(begin, end), hn::Lt(end, set(2 * kHuge)));
+  // Minimum and maximum may drop a NaN, a sum keeps it; 0 times what is not finite is NaN.
+  const VecF zero = hn::Zero(kFloat);
+  VecF sum = zero;
+  VecF reach = zero;
+  for (int axis = 0; axis < 3; ++axis) {
+    sum = hn::Add(sum, hn::Add(origin[axis], direction[axis]));
+    reach = hn::Max(reach, hn::Abs(direction[axis]));
+  }
+  const MaskF finite = hn::Eq(hn::Mul(sum, zero), zero);
+  const MaskF moves = hn::Gt(reach, zero);
+  const MaskF meets = hn::And(hn::And(finite, moves), hn::Lt(begin, end));
   const VecF length = hn::IfThenElseZero(meets, hn::Sub(end, begin));
-  hn::StoreU(begin, kFloat, scratch.begin.data() + first);
+  // A ray that misses has flown to its end.
+  const VecF start = hn::IfThenElse(meets, begin, hn::LoadU(kFloat, rays.t_max.data() + first));
+  hn::StoreU(start, kFloat, scratch.begin.data() + first);
   hn::StoreU(length, kFloat, scratch.length.data() + first);
+  VecI record = hn::Zero(kInt);
   for (int axis = 0; axis < 3; ++axis) {
     const VecF entry = hn::MulAdd(begin, direction[axis], origin[axis]);
     const VecF last = set(static_cast<float>(medium.cell_counts[axis] - 1));
@@ -68,8 +80,12 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
     hn::StoreU(entry, kFloat, scratch.origin[axis].data() + first);
     hn::StoreU(direction[axis], kFloat, scratch.direction[axis].data() + first);
     hn::StoreU(inverse[axis], kFloat, scratch.inverse[axis].data() + first);
-    hn::StoreU(hn::ConvertTo(kInt, safe_cell), kInt, scratch.cell[axis].data() + first);
+    const VecI number = hn::ConvertTo(kInt, safe_cell);
+    hn::StoreU(number, kInt, scratch.cell[axis].data() + first);
+    record = hn::Add(hn::Mul(record, hn::Set(kInt, medium.cell_counts[axis])), number);
   }
+  record = hn::Mul(record, hn::Set(kInt, medium.component_count + 1));
+  hn::StoreU(record, kInt, scratch.record.data() + first);
 }
 
 inline void enter_stream(const MediumView& medium, const RayStream& rays, WalkScratch& scratch) {
@@ -81,6 +97,7 @@ inline void enter_stream(const MediumView& medium, const RayStream& rays, WalkSc
     for (auto& values : scratch.cell) values.resize(padded);
     scratch.begin.resize(padded);
     scratch.length.resize(padded);
+    scratch.record.resize(padded);
   }
   for (std::size_t first = 0; first < rays.size(); first += kLanes) {
     enter_rays(medium, rays, first, scratch);
