@@ -1,4 +1,4 @@
-#include "nanovdb_walk.h"
+#include "bench/nanovdb_walk.h"
 
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/OpenToNanoVDB.h>

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "bench/tally.h"
 #include "freepath/media/medium.h"
 #include "freepath/tracking/streams.h"
-#include "tally.h"
 
 namespace freepath::bench {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tally.h"
+#include "bench/tally.h"
 
 namespace freepath::bench {
 

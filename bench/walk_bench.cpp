@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "cloud.h"
+#include "bench/cloud.h"
+#include "bench/nanovdb_walk.h"
+#include "bench/summary.h"
 #include "freepath/transport/walker.h"
-#include "nanovdb_walk.h"
-#include "summary.h"
 
 namespace freepath::bench {
 namespace {

@@ -34,10 +34,10 @@ Examples:
   freepath render cloud.vdb -o furnace.exr --albedo 1 --environment 1 --stats stats.json
   freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio)";
 
-constexpr std::array kInterpolations{Choice<Interpolation>{"nearest", Interpolation::kNearest},
-                                     Choice<Interpolation>{"trilinear", Interpolation::kTrilinear},
-                                     Choice<Interpolation>{"stochastic",
-                                                           Interpolation::kStochastic}};
+constexpr std::array kInterpolations{
+    Choice<Interpolation>{"nearest", Interpolation::kNearest},
+    Choice<Interpolation>{"trilinear", Interpolation::kTrilinear},
+    Choice<Interpolation>{"stochastic", Interpolation::kStochastic}};
 constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
                                   Choice<Absorption>{"weighted", Absorption::kWeighted}};
 constexpr std::array kUpAxes{Choice<UpAxis>{"y", UpAxis::kY}, Choice<UpAxis>{"z", UpAxis::kZ}};
@@ -118,9 +118,10 @@ void check_memory(const PictureSize& size) {
   const double needed = kBytesPerPixel * size.width * size.height;
   const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
   if (needed > 0.8 * present) {
-    fail("--size: a picture of {}x{} needs {:.0f} GB of memory, and this machine has {:.0f} GB; "
-         "choose a smaller one",
-         size.width, size.height, needed / kGigabyte, present / kGigabyte);
+    fail(
+        "--size: a picture of {}x{} needs {:.0f} GB of memory, and this machine has {:.0f} GB; "
+        "choose a smaller one",
+        size.width, size.height, needed / kGigabyte, present / kGigabyte);
   }
 }
 
@@ -134,9 +135,10 @@ CameraOptions read_camera(const Options& options) {
   if (options.look_at.empty()) return camera;
   const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
   if (numbers.size() != 3 && numbers.size() != 6) {
-    fail("--look-at: '{}' has {} values; give the camera's position and perhaps the point it looks "
-         "at: X,Y,Z or X,Y,Z,ATX,ATY,ATZ",
-         options.look_at, numbers.size());
+    fail(
+        "--look-at: '{}' has {} values; give the camera's position and perhaps the point it looks "
+        "at: X,Y,Z or X,Y,Z,ATX,ATY,ATZ",
+        options.look_at, numbers.size());
   }
   camera.from = Vec3d(numbers[0], numbers[1], numbers[2]);
   if (numbers.size() == 6) camera.at = Vec3d(numbers[3], numbers[4], numbers[5]);
@@ -169,8 +171,7 @@ RenderSettings read_settings(const Options& options) {
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.tracker = read_method(options.tracker, "--tracker", tracker_infos());
-  walk.transmittance =
-      read_method(options.transmittance, "--transmittance", transmittance_infos());
+  walk.transmittance = read_method(options.transmittance, "--transmittance", transmittance_infos());
   walk.interpolation = parse_choice(options.interpolation, "--interpolation", kInterpolations);
   walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
   walk.emission = read_emission_tally(options);
@@ -241,9 +242,10 @@ void add_picture_options(CLI::App& command, Options& o) {
       ->check(kFiniteNumber)
       ->group("Picture");
   command.add_option("--stats", o.stats, "Write statistics to a JSON file")->group("Picture");
-  command.add_option("--look-at", o.look_at,
-                     "Camera position, and perhaps its target: X,Y,Z[,ATX,ATY,ATZ]; by default all "
-                     "of the volume is framed")
+  command
+      .add_option("--look-at", o.look_at,
+                  "Camera position, and perhaps its target: X,Y,Z[,ATX,ATY,ATZ]; by default all "
+                  "of the volume is framed")
       ->group("Picture");
   command.add_option("--fov", o.fov, "Vertical angle of view [degrees]")
       ->capture_default_str()
@@ -274,17 +276,20 @@ void add_medium_options(CLI::App& command, Options& o) {
       ->capture_default_str()
       ->check(kFiniteNumber)
       ->group("Medium");
-  command.add_option("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e")
+  command
+      .add_option("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e")
       ->group("Medium");
 }
 
 void add_light_options(CLI::App& command, Options& o) {
-  command.add_option("--environment", o.environment,
-                     "sky, a radiance V or R,G,B, or a latitude-longitude image (.hdr, .exr) [sky]")
+  command
+      .add_option("--environment", o.environment,
+                  "sky, a radiance V or R,G,B, or a latitude-longitude image (.hdr, .exr) [sky]")
       ->group("Light");
-  command.add_option("--sun", o.sun,
-                     "ELEVATION,AZIMUTH of the sun's disc [degrees, azimuth clockwise from north], "
-                     "or none [40,250 under a sky, else none]")
+  command
+      .add_option("--sun", o.sun,
+                  "ELEVATION,AZIMUTH of the sun's disc [degrees, azimuth clockwise from north], "
+                  "or none [40,250 under a sky, else none]")
       ->group("Light");
   command.add_option("--turbidity", o.turbidity, "Haze of sky and sun, 2 to 10")
       ->capture_default_str()
@@ -295,14 +300,16 @@ void add_light_options(CLI::App& command, Options& o) {
 void add_method_options(CLI::App& command, Options& o) {
   const auto names = [](std::span<const MethodInfo> infos) {
     std::string list;
-    for (const MethodInfo& info : infos) list += (list.empty() ? "" : ", ") + std::string(info.name);
+    for (const MethodInfo& info : infos)
+      list += (list.empty() ? "" : ", ") + std::string(info.name);
     return list;
   };
   command.add_option("--tracker", o.tracker, "Free-path sampling: " + names(tracker_infos()))
       ->capture_default_str()
       ->group("Method");
-  command.add_option("--transmittance", o.transmittance,
-                     "Transmittance of shadow rays: " + names(transmittance_infos()))
+  command
+      .add_option("--transmittance", o.transmittance,
+                  "Transmittance of shadow rays: " + names(transmittance_infos()))
       ->capture_default_str()
       ->group("Method");
   command.add_option("--interpolation", o.interpolation, "nearest, trilinear or stochastic")
@@ -311,13 +318,15 @@ void add_method_options(CLI::App& command, Options& o) {
   command.add_option("--absorption", o.absorption, "analog or weighted")
       ->capture_default_str()
       ->group("Method");
-  command.add_option("--emission", o.emission,
-                     "collision or analog [collision]; a number or R,G,B is taken as --le")
+  command
+      .add_option("--emission", o.emission,
+                  "collision or analog [collision]; a number or R,G,B is taken as --le")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group("Method");
-  command.add_option("--super-voxel", o.super_voxel,
-                     "Edge of a super-voxel [voxels]: 4, 8, 16, 32, 64, or 0 for automatic")
+  command
+      .add_option("--super-voxel", o.super_voxel,
+                  "Edge of a super-voxel [voxels]: 4, 8, 16, 32, 64, or 0 for automatic")
       ->capture_default_str()
       ->group("Method");
   command.add_option("--max-scatterings", o.max_scatterings, "Ends paths; biased [no limit]")

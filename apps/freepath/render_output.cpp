@@ -156,15 +156,18 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
                    const RenderReport& report) {
   const WalkStatistics& counts = result.statistics;
   const double paths = static_cast<double>(std::max<uint64_t>(result.paths, 1));
-  if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", result.samples);
-  fmt::print(stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
+  if (result.interrupted)
+    fmt::print(stderr, "interrupted after {} samples per pixel\n", result.samples);
+  fmt::print(stderr,
+             "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
              result.samples,
              clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
              report.seconds_load, report.seconds_build, report.seconds_render);
   fmt::print(stderr,
              "{}: {} paths, a path {:.2f} lookups, {:.2f} real and {:.2f} null collisions, {:.2f} "
              "super-voxel steps; largest weight {:.4g}, {} negative weights, {} bound violations\n",
-             report.settings.walk.tracker, result.paths, static_cast<double>(counts.lookups) / paths,
+             report.settings.walk.tracker, result.paths,
+             static_cast<double>(counts.lookups) / paths,
              static_cast<double>(counts.real_collisions) / paths,
              static_cast<double>(counts.null_collisions) / paths,
              static_cast<double>(counts.super_voxel_steps) / paths, counts.largest_weight,

@@ -67,7 +67,8 @@ class Dealer {
               kFloat, row);
   }
   HWY_INLINE void deal(const int32_t* values, int32_t* row) const {
-    const VecI dealt_values = hn::BitCast(kInt, dealt(hn::BitCast(kFloat, hn::LoadU(kInt, values))));
+    const VecI dealt_values =
+        hn::BitCast(kInt, dealt(hn::BitCast(kFloat, hn::LoadU(kInt, values))));
     hn::Store(hn::IfThenElse(int_mask(lanes_), dealt_values, hn::Load(kInt, row)), kInt, row);
   }
   HWY_INLINE void deal(const uint32_t* values, uint32_t* row) const {

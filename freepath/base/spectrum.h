@@ -20,8 +20,6 @@ inline bool is_finite(const Spectrum& s) {
   return std::isfinite(s.x) && std::isfinite(s.y) && std::isfinite(s.z);
 }
 /// Relative luminance of linear Rec. 709 values.
-inline float luminance(const Spectrum& s) {
-  return 0.2126F * s.x + 0.7152F * s.y + 0.0722F * s.z;
-}
+inline float luminance(const Spectrum& s) { return 0.2126F * s.x + 0.7152F * s.y + 0.0722F * s.z; }
 
 }  // namespace freepath

@@ -11,9 +11,9 @@ namespace freepath {
 
 /// A scalar density field.
 struct Field {
-  std::string name;             ///< Name of the grid, for messages.
-  BrickMap voxels;              ///< Values; 0 outside.
-  Matrix4d index_to_world{};    ///< Affine; the centre of voxel (i,j,k) is the index point (i,j,k).
+  std::string name;           ///< Name of the grid, for messages.
+  BrickMap voxels;            ///< Values; 0 outside.
+  Matrix4d index_to_world{};  ///< Affine; the centre of voxel (i,j,k) is the index point (i,j,k).
 };
 
 }  // namespace freepath

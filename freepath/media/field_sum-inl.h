@@ -1,6 +1,6 @@
 // The sum of a medium's components, in lanes: bounds of a super-voxel and coefficients at a point.
-// A look-up has three stages, so that a walk can keep several groups of lanes in flight and hide the
-// latency of memory: aim (which voxel?), fetch (which brick?), coefficients (its value).
+// A look-up has three stages, so that a walk can keep several groups of lanes in flight and hide
+// the latency of memory: aim (which voxel?), fetch (which brick?), coefficients (its value).
 
 #if defined(FREEPATH_MEDIA_FIELD_SUM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FREEPATH_MEDIA_FIELD_SUM_INL_H_
@@ -39,17 +39,16 @@ class FieldSum {
 
   /// A look-up on its way, one row a lane.
   struct State {
-    HWY_ALIGN_MAX int32_t voxel[3][kLanes];     ///< Base voxel, from the first of the index.
-    HWY_ALIGN_MAX float fraction[3][kLanes];    ///< Place between it and the next (trilinear).
-    HWY_ALIGN_MAX int32_t entry[kLanes];        ///< Index entry of its brick.
+    HWY_ALIGN_MAX int32_t voxel[3][kLanes];   ///< Base voxel, from the first of the index.
+    HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
+    HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
     HWY_ALIGN_MAX int32_t address[Medium::kMaxComponents][kLanes];  ///< Voxel in the array.
   };
 
   explicit FieldSum(const MediumView& medium)
       : medium_(medium), size_(static_cast<float>(medium.cell_size)) {
     for (int axis = 0; axis < 3; ++axis) {
-      last_voxel_[axis] =
-          static_cast<float>(medium.brick_counts[axis] * BrickMap::kBrickSize - 2);
+      last_voxel_[axis] = static_cast<float>(medium.brick_counts[axis] * BrickMap::kBrickSize - 2);
     }
   }
 
@@ -62,8 +61,7 @@ class FieldSum {
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
         const float sigma_t = component.sigma_a[channel] + component.sigma_s[channel];
-        bounds.majorant[channel] =
-            hn::MulAdd(density, set(sigma_t), bounds.majorant[channel]);
+        bounds.majorant[channel] = hn::MulAdd(density, set(sigma_t), bounds.majorant[channel]);
       }
     }
     return bounds;
@@ -88,9 +86,9 @@ class FieldSum {
       const VecF fraction = hn::Sub(place, base);
       if (medium_.interpolation == Interpolation::kStochastic) {
         // 21 bits an axis, in the middle of their interval so that rounding favours no side.
-        const VecF u = hn::Mul(
-            hn::Add(hn::ConvertTo(kFloat, hn::BitCast(kInt, random[axis])), set(0.5F)),
-            set(0x1p-21F));
+        const VecF u =
+            hn::Mul(hn::Add(hn::ConvertTo(kFloat, hn::BitCast(kInt, random[axis])), set(0.5F)),
+                    set(0x1p-21F));
         const VecI next = hn::VecFromMask(kInt, int_mask(hn::Lt(u, fraction)));
         voxel[axis] = hn::Sub(voxel[axis], next);  // a true lane is -1
       } else if (medium_.interpolation == Interpolation::kTrilinear) {
@@ -126,8 +124,7 @@ class FieldSum {
   /// Stage 3: the density of one component.
   HWY_INLINE VecF density(int k, const State& state) const {
     if (medium_.interpolation == Interpolation::kTrilinear) return trilinear(k, state);
-    return hn::GatherIndex(kFloat, medium_.components[k].voxels,
-                           hn::Load(kInt, state.address[k]));
+    return hn::GatherIndex(kFloat, medium_.components[k].voxels, hn::Load(kInt, state.address[k]));
   }
 
   HWY_INLINE Coefficients coefficients(const State& state) const {
@@ -193,8 +190,8 @@ class FieldSum {
       if (part <= 0) continue;
       for (int channel = 0; channel < N; ++channel) {
         // density cancels: (density σ_s,k(λ) / σ_s(λ)) · (Σ σ_s / (density Σ_λ σ_s,k))
-        const VecF factor = hn::Div(hn::Mul(set(component.sigma_s[channel] / part), sum),
-                                    total.sigma_s[channel]);
+        const VecF factor =
+            hn::Div(hn::Mul(set(component.sigma_s[channel] / part), sum), total.sigma_s[channel]);
         const MaskF scatters = hn::And(mine, hn::Gt(total.sigma_s[channel], hn::Zero(kFloat)));
         assign(weight[channel], scatters, hn::Mul(weight[channel], factor));
       }
@@ -202,18 +199,18 @@ class FieldSum {
   }
 
   HWY_INLINE VecI brick_entry(const VecI (&voxel)[3]) const {
-    const VecI row = hn::Add(
-        hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, medium_.brick_counts[1])),
-        hn::ShiftRight<3>(voxel[1]));
+    const VecI row =
+        hn::Add(hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, medium_.brick_counts[1])),
+                hn::ShiftRight<3>(voxel[1]));
     return hn::Add(hn::Mul(row, hn::Set(kInt, medium_.brick_counts[2])),
                    hn::ShiftRight<3>(voxel[2]));
   }
 
   static HWY_INLINE VecI voxel_in_brick(const VecI (&voxel)[3]) {
     const VecI low = hn::Set(kInt, 7);
-    return hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(voxel[0], low)),
-                         hn::ShiftLeft<3>(hn::And(voxel[1], low))),
-                  hn::And(voxel[2], low));
+    return hn::Or(
+        hn::Or(hn::ShiftLeft<6>(hn::And(voxel[0], low)), hn::ShiftLeft<3>(hn::And(voxel[1], low))),
+        hn::And(voxel[2], low));
   }
 
   HWY_INLINE VecI voxel_address(int k, VecI entry, VecI within) const {

@@ -133,8 +133,8 @@ Box3d Medium::world_bounds() const {
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d point;
       for (int axis = 0; axis < 3; ++axis) {
-        point[axis] = (corner >> axis & 1) != 0 ? map.active_max()[axis] + 0.5
-                                                : map.active_min()[axis] - 0.5;
+        point[axis] =
+            (corner >> axis & 1) != 0 ? map.active_max()[axis] + 0.5 : map.active_min()[axis] - 0.5;
       }
       box.extendBy(point * component.density->index_to_world);
     }

@@ -55,8 +55,8 @@ class Medium {
   const std::vector<Component>& components() const { return components_; }
   const SuperVoxels& super_voxels() const { return super_voxels_; }
 
-  /// What a step of a walk reads of a super-voxel, side by side so that it costs one cache line: the
-  /// maxima of the components, then the empty radius. Entry: cell · (components + 1).
+  /// What a step of a walk reads of a super-voxel, side by side so that it costs one cache line:
+  /// the maxima of the components, then the empty radius. Entry: cell · (components + 1).
   const std::vector<float>& walk_cells() const { return walk_cells_; }
 
   /// World space → walk space, whose unit is the edge of a super-voxel and whose cells are those of

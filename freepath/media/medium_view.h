@@ -10,8 +10,8 @@ namespace freepath {
 
 /// Cross sections of one component in the channels that a walk carries [1/m per density].
 struct ComponentView {
-  const uint32_t* index = nullptr;   ///< Brick of each index entry.
-  const float* voxels = nullptr;     ///< Voxels of the bricks.
+  const uint32_t* index = nullptr;  ///< Brick of each index entry.
+  const float* voxels = nullptr;    ///< Voxels of the bricks.
   std::array<float, kChannels> sigma_a{};
   std::array<float, kChannels> sigma_s{};
   std::array<float, kChannels> emission{};  ///< sigma_a · L_e

@@ -40,10 +40,10 @@ struct SegmentState {
 
 /// A segment: the part of a ray in one super-voxel, or in one empty cube of them.
 struct Segment {
-  VecI record;  ///< Place of the super-voxel's record in Medium::walk_cells().
-  VecF exit;    ///< Where it ends [world].
-  VecI low[3];  ///< First cell along each axis.
-  VecI high[3]; ///< One past the last cell.
+  VecI record;        ///< Place of the super-voxel's record in Medium::walk_cells().
+  VecF exit;          ///< Where it ends [world].
+  VecI low[3];        ///< First cell along each axis.
+  VecI high[3];       ///< One past the last cell.
   MaskF exits_by[3];  ///< The axis whose plane is crossed there; exactly one.
 };
 
@@ -96,8 +96,8 @@ class SuperVoxelSegments {
     s.record = hn::IfThenElseZero(int_mask(lanes), cursor.record);
     const VecI one = hn::Set(kInt, 1);
     const VecI radius = hn::Max(
-        hn::ConvertTo(kInt, hn::GatherIndex(kFloat, medium_.cells + medium_.component_count,
-                                            s.record)),
+        hn::ConvertTo(kInt,
+                      hn::GatherIndex(kFloat, medium_.cells + medium_.component_count, s.record)),
         one);
     VecF exits[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,8 +116,8 @@ class SuperVoxelSegments {
     return s;
   }
 
-  /// Moves the lanes of the mask, whose t is the segment's exit, into the next cell. Cells only ever
-  /// advance in the ray's direction, whatever rounding does, so every walk ends.
+  /// Moves the lanes of the mask, whose t is the segment's exit, into the next cell. Cells only
+  /// ever advance in the ray's direction, whatever rounding does, so every walk ends.
   /// @return the lanes that are still inside the super-voxels
   HWY_INLINE MaskF leave(Cursor& cursor, const Segment& s, MaskF lanes) const {
     VecI outside = hn::Zero(kInt);
@@ -128,8 +128,7 @@ class SuperVoxelSegments {
       const VecI found = floor_to_int(position);
       // The crossed plane decides its own axis; along the others the point stays in the segment.
       const VecI first = hn::IfThenElse(forward, cursor.cell[axis], s.low[axis]);
-      const VecI last =
-          hn::IfThenElse(forward, hn::Sub(s.high[axis], one), cursor.cell[axis]);
+      const VecI last = hn::IfThenElse(forward, hn::Sub(s.high[axis], one), cursor.cell[axis]);
       const VecI inside = hn::Min(hn::Max(found, first), last);
       const VecI crossed = hn::IfThenElse(forward, s.high[axis], hn::Sub(s.low[axis], one));
       const VecI next = hn::IfThenElse(int_mask(s.exits_by[axis]), crossed, inside);
@@ -158,16 +157,13 @@ class SuperVoxelSegments {
  private:
   /// Also computed where a ray enters (transport/entry-inl.h).
   HWY_INLINE VecI record_of(const Cursor& cursor) const {
-    const VecI row = hn::Add(hn::Mul(cursor.cell[0], hn::Set(kInt, medium_.cell_counts[1])),
-                             cursor.cell[1]);
-    const VecI cell =
-        hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])), cursor.cell[2]);
+    const VecI row =
+        hn::Add(hn::Mul(cursor.cell[0], hn::Set(kInt, medium_.cell_counts[1])), cursor.cell[1]);
+    const VecI cell = hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])), cursor.cell[2]);
     return hn::Mul(cell, hn::Set(kInt, medium_.component_count + 1));
   }
 
-  static HWY_INLINE VecI floor_to_int(VecF value) {
-    return hn::ConvertTo(kInt, hn::Floor(value));
-  }
+  static HWY_INLINE VecI floor_to_int(VecF value) { return hn::ConvertTo(kInt, hn::Floor(value)); }
 
   MediumView medium_;
 };

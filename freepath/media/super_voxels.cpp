@@ -45,8 +45,7 @@ Range range_of_voxels(const BrickMap& map, const Vec3i& begin, const Vec3i& end)
   for (int bx = std::max(first.x, 0); bx <= std::min(last.x, counts.x - 1); ++bx) {
     for (int by = std::max(first.y, 0); by <= std::min(last.y, counts.y - 1); ++by) {
       for (int bz = std::max(first.z, 0); bz <= std::min(last.z, counts.z - 1); ++bz) {
-        const std::size_t entry =
-            (static_cast<std::size_t>(bx) * counts.y + by) * counts.z + bz;
+        const std::size_t entry = (static_cast<std::size_t>(bx) * counts.y + by) * counts.z + bz;
         const std::size_t brick = map.index()[entry];
         if (brick == 0) {
           range.add(0.0F);
@@ -76,8 +75,7 @@ SuperVoxels empty_cells(const Vec3i& brick_counts, int cell_size, std::size_t co
   cells.cell_size = cell_size;
   cells.components = static_cast<int>(components);
   for (int axis = 0; axis < 3; ++axis) {
-    cells.counts[axis] =
-        (brick_counts[axis] * BrickMap::kBrickSize + cell_size - 1) / cell_size;
+    cells.counts[axis] = (brick_counts[axis] * BrickMap::kBrickSize + cell_size - 1) / cell_size;
   }
   const std::size_t total =
       std::size_t(cells.counts.x) * std::size_t(cells.counts.y) * std::size_t(cells.counts.z);
@@ -95,8 +93,8 @@ SuperVoxels finest_cells(std::span<const BrickMap* const> densities, int cell_si
           const Vec3i corner = Vec3i(x, y, z) * cell_size;
           const std::size_t cell = cell_index(cells.counts, x, y, z);
           for (std::size_t k = 0; k < densities.size(); ++k) {
-            const Range range = range_of_voxels(*densities[k], corner - Vec3i(1),
-                                                corner + Vec3i(cell_size + 1));
+            const Range range =
+                range_of_voxels(*densities[k], corner - Vec3i(1), corner + Vec3i(cell_size + 1));
             cells.minima[cell * densities.size() + k] = range.minimum;
             cells.maxima[cell * densities.size() + k] = range.maximum;
           }
@@ -172,7 +170,8 @@ void fill_empty_radius(SuperVoxels& cells) {
       std::vector<int32_t> result(length);
       for (int a = rows.begin(); a < rows.end(); ++a) {
         for (int b = 0; b < other2; ++b) {
-          int32_t* first = radius.data() + a * strides[(axis + 1) % 3] + b * strides[(axis + 2) % 3];
+          int32_t* first =
+              radius.data() + a * strides[(axis + 1) % 3] + b * strides[(axis + 2) % 3];
           for (int i = 0; i < length; ++i) line[i] = first[i * stride];
           // min over j of max(|i-j|, line[j]); lines are short and the search stops early.
           for (int i = 0; i < length; ++i) {
@@ -219,8 +218,9 @@ SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                const SuperVoxelCost& cost) {
   if (cell_size != 0 && std::find(std::begin(kSuperVoxelSizes), std::end(kSuperVoxelSizes),
                                   cell_size) == std::end(kSuperVoxelSizes)) {
-    fail("a super-voxel of {} voxels is not possible: choose 4, 8, 16, 32 or 64, or 0 for automatic",
-         cell_size);
+    fail(
+        "a super-voxel of {} voxels is not possible: choose 4, 8, 16, 32 or 64, or 0 for automatic",
+        cell_size);
   }
   const Vec3i brick_counts = densities[0]->brick_counts();
   const std::size_t fine_cells =

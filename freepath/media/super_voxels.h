@@ -15,14 +15,14 @@ namespace freepath {
 /// bound nearest, trilinear and stochastic interpolation alike, and a position that rounding moves
 /// just over a cell's face still reads voxels that the cell has counted.
 ///
-/// Cell (x,y,z) covers the voxels [cell_size·x, cell_size·(x+1)) counted from the first voxel of the
-/// brick map's index. Entries are stored x slowest: cell = (x · ny + y) · nz + z.
+/// Cell (x,y,z) covers the voxels [cell_size·x, cell_size·(x+1)) counted from the first voxel of
+/// the brick map's index. Entries are stored x slowest: cell = (x · ny + y) · nz + z.
 struct SuperVoxels {
-  int cell_size = 8;           ///< Edge of a cell [voxels].
-  Vec3i counts{0};             ///< Cells along each axis.
-  int components = 1;          ///< Densities per cell.
-  std::vector<float> minima;   ///< [cell · components + component]
-  std::vector<float> maxima;   ///< [cell · components + component]
+  int cell_size = 8;          ///< Edge of a cell [voxels].
+  Vec3i counts{0};            ///< Cells along each axis.
+  int components = 1;         ///< Densities per cell.
+  std::vector<float> minima;  ///< [cell · components + component]
+  std::vector<float> maxima;  ///< [cell · components + component]
   /// Chebyshev radius of the empty cube around a cell [cells]: with radius r every cell nearer than
   /// r along all axes is empty (0: the cell itself is not). A walk leaves the whole cube in a step.
   std::vector<int32_t> empty_radius;
@@ -34,10 +34,10 @@ struct SuperVoxels {
 /// What the cells of one component are like.
 struct SuperVoxelSummary {
   std::size_t cells = 0;
-  std::size_t occupied = 0;    ///< Cells whose maximum is not 0.
-  double mean_maximum = 0;     ///< Over the occupied cells.
-  double mean_minimum = 0;     ///< Over the occupied cells; its share of the maximum is what a
-                               ///< control of minima can decide without a look-up.
+  std::size_t occupied = 0;  ///< Cells whose maximum is not 0.
+  double mean_maximum = 0;   ///< Over the occupied cells.
+  double mean_minimum = 0;   ///< Over the occupied cells; its share of the maximum is what a
+                             ///< control of minima can decide without a look-up.
 };
 
 SuperVoxelSummary summarize(const SuperVoxels& cells, int component = 0);

@@ -81,9 +81,9 @@ View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double a
   const Vec3d up_world(up_vector(up));
   const CameraAxes axes = camera_axes(-back, up_world);
   const Vec3d centre = bounds.center();
-  // A point (x, y, z) in the camera's axes is seen from (cx, cy, d) if |x - cx| <= (d - z) e, with e
-  // the film's extent at distance 1; so the two sides bound d e + cx and d e - cx, as do the other
-  // two for cy.
+  // A point (x, y, z) in the camera's axes is seen from (cx, cy, d) if |x - cx| <= (d - z) e, with
+  // e the film's extent at distance 1; so the two sides bound d e + cx and d e - cx, as do the
+  // other two for cy.
   double right = -HUGE_VAL;
   double left = -HUGE_VAL;
   double top = -HUGE_VAL;

@@ -60,9 +60,9 @@ class PathWavefront {
   struct Path {
     Spectrum throughput;
     Spectrum radiance;
-    float phase_pdf;    ///< Density with which the direction was drawn [1/sr].
-    uint32_t bounce;    ///< Scatterings so far.
-    uint32_t result;    ///< Place among the job's samples.
+    float phase_pdf;  ///< Density with which the direction was drawn [1/sr].
+    uint32_t bounce;  ///< Scatterings so far.
+    uint32_t result;  ///< Place among the job's samples.
     uint64_t lookups;
     float alpha;
     Spectrum albedo;
@@ -90,8 +90,8 @@ class PathWavefront {
   void trace_shadows();
 
   const PathSetup& setup_;
-  std::vector<HenyeyGreenstein> phases_;   // of the components
-  std::vector<Spectrum> albedos_;          // of the components
+  std::vector<HenyeyGreenstein> phases_;  // of the components
+  std::vector<Spectrum> albedos_;         // of the components
   std::vector<Path> paths_in_flight_;
   RayStream rays_;
   FlightStream flights_;

@@ -10,11 +10,11 @@ namespace freepath {
 
 /// How much to render, and with what.
 struct RenderSettings {
-  uint32_t samples = 64;      ///< Of each pixel; 0: as many as the time allows.
-  double time_limit = 0;      ///< [s] 0: none. No pass begins once it is reached.
-  int threads = 0;            ///< 0: as many as the machine has.
+  uint32_t samples = 64;  ///< Of each pixel; 0: as many as the time allows.
+  double time_limit = 0;  ///< [s] 0: none. No pass begins once it is reached.
+  int threads = 0;        ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
-  std::size_t batch = 2048;   ///< Paths in flight per thread; the picture does not depend on it.
+  std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
   WalkSettings walk;
 };
 
@@ -37,7 +37,8 @@ struct RenderResult {
   bool interrupted = false;
 };
 
-/// Called now and then, by one thread at a time; false ends the rendering after the batches at work.
+/// Called now and then, by one thread at a time; false ends the rendering after the batches at
+/// work.
 using ProgressFunction = std::function<bool(const RenderProgress&)>;
 
 /// Renders a medium lit from outside and from within, without a limit to the number of scatterings.

@@ -14,12 +14,12 @@ namespace freepath {
 
 /// How a density becomes collision coefficients: an extinction and an albedo, or both coefficients.
 struct OpticalProperties {
-  float density_scale = 1;      ///< Multiplies the densities.
-  Spectrum albedo{0.99F};       ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
+  float density_scale = 1;          ///< Multiplies the densities.
+  Spectrum albedo{0.99F};           ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
   std::optional<Spectrum> sigma_a;  ///< [1/m per unit of density] with sigma_s replaces the albedo;
   std::optional<Spectrum> sigma_s;  ///< of the two the one that is not given is 0.
   float g = 0;
-  Spectrum emission{0.0F};      ///< L_e
+  Spectrum emission{0.0F};  ///< L_e
 };
 
 /// The daylight sky.
@@ -29,7 +29,7 @@ struct SkyEnvironment {};
 struct LightOptions {
   /// The sky, one radiance, or the name of a latitude-longitude image.
   std::variant<SkyEnvironment, Spectrum, std::string> environment = SkyEnvironment{};
-  bool sun = true;             ///< Whether its disc shines; it shapes the sky in any case.
+  bool sun = true;  ///< Whether its disc shines; it shapes the sky in any case.
   SunParameters sun_parameters{.elevation = 40, .azimuth = 250};
 };
 
@@ -37,9 +37,9 @@ struct LightOptions {
 struct CameraOptions {
   int width = 640;
   int height = 360;
-  double fov = 40;             ///< Vertical [degrees].
-  std::optional<Vec3d> from;   ///< [world]
-  std::optional<Vec3d> at;     ///< [world]
+  double fov = 40;            ///< Vertical [degrees].
+  std::optional<Vec3d> from;  ///< [world]
+  std::optional<Vec3d> at;    ///< [world]
 };
 
 /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic

@@ -19,8 +19,8 @@ namespace freepath::HWY_NAMESPACE {
 template <int N>
 struct Collision {
   MaskF lanes;
-  VecF rate;        ///< Density of tentative collisions here [1/m].
-  VecF uniform;     ///< [0,1), for the choice of the event.
+  VecF rate;     ///< Density of tentative collisions here [1/m].
+  VecF uniform;  ///< [0,1), for the choice of the event.
   VecF weight[N];
   VecF emitted[N];  ///< Tally of emitted radiance so far.
   MaskF scatter;    ///< Set by the tracker; neither: null.
@@ -51,9 +51,9 @@ HWY_INLINE MaskF emission_event(const WalkModes& modes, const Collision<N>& c, M
 }
 
 /// Chooses absorption, scattering or null with probabilities in proportion to `absorb`, `scatter`
-/// and `null` (each ≥ 0) and weights the event. Under weighted absorption the absorbed part scatters
-/// too and the weight takes the albedo. Emission is tallied at every tentative collision, or at the
-/// real ones alone.
+/// and `null` (each ≥ 0) and weights the event. Under weighted absorption the absorbed part
+/// scatters too and the weight takes the albedo. Emission is tallied at every tentative collision,
+/// or at the real ones alone.
 ///
 /// @param probability unnormalised probabilities of absorption, scattering, null
 /// @param sigma_n null coefficient of each channel [1/m]
@@ -85,9 +85,9 @@ HWY_INLINE void choose_event(const WalkModes& modes, const Coefficients& sigma,
       c.emitted[channel] = hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share,
                                       c.emitted[channel]);
     }
-    const VecF coefficient = hn::IfThenElse(
-        c.absorb, sigma.sigma_a[channel],
-        hn::IfThenElse(c.scatter, sigma.sigma_s[channel], sigma_n[channel]));
+    const VecF coefficient =
+        hn::IfThenElse(c.absorb, sigma.sigma_a[channel],
+                       hn::IfThenElse(c.scatter, sigma.sigma_s[channel], sigma_n[channel]));
     c.weight[channel] = hn::Mul(c.weight[channel], hn::Mul(coefficient, scale));
   }
 }

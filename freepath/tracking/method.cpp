@@ -35,8 +35,7 @@ void set_option(Method& method, const MethodInfo& info, std::string_view assignm
   const auto found = std::find_if(info.options.begin(), info.options.end(),
                                   [&](const MethodOption& option) { return option.name == name; });
   if (found == info.options.end()) {
-    fail("'{}' has no option '{}'; its options are: {}", info.name, name,
-         list_names(info.options));
+    fail("'{}' has no option '{}'; its options are: {}", info.name, name, list_names(info.options));
   }
   if (equals == std::string_view::npos) {
     fail("option '{}' of '{}' needs a value: {}:{}={}", name, info.name, info.name, name,

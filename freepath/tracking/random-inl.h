@@ -64,8 +64,7 @@ HWY_INLINE RandomWords philox_lanes(VecU block, VecU stream, VecU sample, VecU p
 
 /// [0,1) with 24 bits, as uniform_from_bits().
 HWY_INLINE VecF uniform_lanes(VecU bits) {
-  return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, hn::ShiftRight<8>(bits))),
-                 set(0x1p-24F));
+  return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, hn::ShiftRight<8>(bits))), set(0x1p-24F));
 }
 
 /// Exponential with mean 1; the logarithm's argument lies in (0,1], as open_uniform_from_bits().

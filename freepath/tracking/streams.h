@@ -43,9 +43,9 @@ struct RayStream {
 /// What became of the rays, in the same slots. Weights start at 1; a walk of one channel writes the
 /// first weight alone.
 struct FlightStream {
-  std::vector<float> t;                            ///< Distance flown [world].
+  std::vector<float> t;  ///< Distance flown [world].
   std::vector<Event> event;
-  std::vector<uint8_t> component;                  ///< Of a scattering.
+  std::vector<uint8_t> component;  ///< Of a scattering.
   std::array<std::vector<float>, kChannels> weight;
   std::array<std::vector<float>, kChannels> emitted;  ///< Emitted radiance collected on the way.
   std::vector<uint32_t> lookups;
@@ -71,7 +71,7 @@ struct FlightStream {
 struct WalkScratch {
   std::array<std::vector<float>, 3> origin, direction, inverse;  ///< [walk space]
   std::array<std::vector<int32_t>, 3> cell;
-  std::vector<int32_t> record;        ///< Where the bounds of that cell stand.
+  std::vector<int32_t> record;       ///< Where the bounds of that cell stand.
   std::vector<float> begin, length;  ///< Entry of the medium, and how far from there to its end.
 };
 

@@ -33,7 +33,7 @@ namespace freepath::HWY_NAMESPACE {
 
 /// Groups in flight: enough to hide a miss of the last cache behind the arithmetic of the others
 /// (bench/README.md has the figures).
-inline constexpr int kGroups = 4;
+inline constexpr int kGroups = 8;
 
 /// A group steps through super-voxels until no more than one in kSearchingShare of its lanes
 /// still looks for its tentative collision; the others go on, and those resume in the next round.
@@ -89,22 +89,22 @@ class Walk {
   struct Group {
     typename Segments::State segments;
     typename Medium::State lookup;
-    HWY_ALIGN_MAX float tau[kLanes];    ///< Optical depth still to go to the tentative collision.
-    HWY_ALIGN_MAX float rate[kLanes];   ///< Where it happened [1/m].
-    HWY_ALIGN_MAX float exit[kLanes];   ///< Of the segment it happened in [world].
+    HWY_ALIGN_MAX float tau[kLanes];   ///< Optical depth still to go to the tentative collision.
+    HWY_ALIGN_MAX float rate[kLanes];  ///< Where it happened [1/m].
+    HWY_ALIGN_MAX float exit[kLanes];  ///< Of the segment it happened in [world].
     HWY_ALIGN_MAX float weight[N][kLanes];
     HWY_ALIGN_MAX float emitted[N][kLanes];
     HWY_ALIGN_MAX uint32_t words[3][kLanes];  ///< Random words for the collision to come.
     HWY_ALIGN_MAX uint32_t pixel[kLanes];
     HWY_ALIGN_MAX uint32_t sample[kLanes];
     HWY_ALIGN_MAX uint32_t stream[kLanes];
-    HWY_ALIGN_MAX uint32_t block[kLanes];     ///< Philox blocks drawn, one per tentative collision.
+    HWY_ALIGN_MAX uint32_t block[kLanes];  ///< Philox blocks drawn, one per tentative collision.
     HWY_ALIGN_MAX int32_t component[kLanes];
-    HWY_ALIGN_MAX uint32_t ray[kLanes];       ///< Slot in the streams.
-    uint32_t alive;      ///< Lanes that hold a ray.
-    uint32_t drawing;    ///< Lanes that need a new optical depth.
-    uint32_t searching;  ///< Lanes on their way to a tentative collision.
-    uint32_t colliding;  ///< Lanes at a tentative collision.
+    HWY_ALIGN_MAX uint32_t ray[kLanes];  ///< Slot in the streams.
+    uint32_t alive;                      ///< Lanes that hold a ray.
+    uint32_t drawing;                    ///< Lanes that need a new optical depth.
+    uint32_t searching;                  ///< Lanes on their way to a tentative collision.
+    uint32_t colliding;                  ///< Lanes at a tentative collision.
     uint32_t escaped;
     uint32_t scattered;
     uint32_t absorbed;
@@ -186,8 +186,8 @@ class Walk {
     hn::Store(cursor.t, kFloat, group.segments.t);
     VecF point[3];
     segments_.position(cursor, point);
-    medium_.aim(point, colliding, hn::Load(kUint, group.words[1]),
-                hn::Load(kUint, group.words[2]), group.lookup);
+    medium_.aim(point, colliding, hn::Load(kUint, group.words[1]), hn::Load(kUint, group.words[2]),
+                group.lookup);
     group.drawing = group.scattered = group.absorbed = 0;
   }
 
@@ -210,8 +210,8 @@ class Walk {
 
     c.scatter = hn::And(c.scatter, c.lanes);
     c.absorb = hn::And(c.absorb, c.lanes);
-    const VecI component = medium_.choose_component(group.lookup, sigma, c.scatter_uniform,
-                                                    c.scatter, c.weight);
+    const VecI component =
+        medium_.choose_component(group.lookup, sigma, c.scatter_uniform, c.scatter, c.weight);
     hn::Store(component, kInt, group.component);
     for (int channel = 0; channel < N; ++channel) {
       assign(weight[channel], c.lanes, c.weight[channel]);
@@ -229,8 +229,7 @@ class Walk {
   HWY_INLINE void count(const Group& group, const Coefficients& sigma, const Collision<N>& c,
                         const VecF (&weight)[N]) {
     const auto collisions = static_cast<uint64_t>(std::popcount(group.colliding));
-    const auto real =
-        static_cast<uint64_t>(std::popcount(group.scattered | group.absorbed));
+    const auto real = static_cast<uint64_t>(std::popcount(group.scattered | group.absorbed));
     statistics_.tentative_collisions += collisions;
     statistics_.real_collisions += real;
     statistics_.null_collisions += collisions - real;

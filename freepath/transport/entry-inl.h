@@ -22,9 +22,9 @@ HWY_INLINE VecF entry_inverse(VecF direction) {
   return hn::Div(set(1.0F), hn::IfThenElse(small, set(1.0F / kHuge), direction));
 }
 
-/// Enters kLanes rays from slot `first` on. The origin moves to where a ray meets the bounds, so that
-/// a distant camera costs no precision inside. A ray that misses, that has no direction, or whose
-/// numbers are not finite gets length 0.
+/// Enters kLanes rays from slot `first` on. The origin moves to where a ray meets the bounds, so
+/// that a distant camera costs no precision inside. A ray that misses, that has no direction, or
+/// whose numbers are not finite gets length 0.
 HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std::size_t first,
                            WalkScratch& scratch) {
   VecF world_origin[3];
@@ -48,8 +48,7 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
       direction[axis] = hn::MulAdd(world_direction[from], factor, direction[axis]);
     }
     inverse[axis] = entry_inverse(direction[axis]);
-    const VecF to_low =
-        hn::Mul(hn::Sub(set(medium.bounds_min[axis]), origin[axis]), inverse[axis]);
+    const VecF to_low = hn::Mul(hn::Sub(set(medium.bounds_min[axis]), origin[axis]), inverse[axis]);
     const VecF to_high =
         hn::Mul(hn::Sub(set(medium.bounds_max[axis]), origin[axis]), inverse[axis]);
     begin = hn::Max(begin, hn::Min(to_low, to_high));
@@ -64,7 +63,7 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
     reach = hn::Max(reach, hn::Abs(direction[axis]));
   }
   const MaskF finite = hn::Eq(hn::Mul(sum, zero), zero);
-  const MaskF moves = hn::Gt(reach, zero);
+  const MaskF moves = hn::Gt(reach, set(1.0F / kHuge));  // else t would not move the point
   const MaskF meets = hn::And(hn::And(finite, moves), hn::Lt(begin, end));
   const VecF length = hn::IfThenElseZero(meets, hn::Sub(end, begin));
   // A ray that misses has flown to its end.

@@ -41,7 +41,9 @@ std::vector<Kernel> make_kernels(MethodList<Methods...> /*list*/) {
   return {Kernel{Methods::kInfo, &walk_stream<1, Methods>, &walk_stream<kChannels, Methods>}...};
 }
 
-KernelTable make_table() { return {make_kernels(TrackerList{}), make_kernels(TransmittanceList{})}; }
+KernelTable make_table() {
+  return {make_kernels(TrackerList{}), make_kernels(TransmittanceList{})};
+}
 
 }  // namespace freepath::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -11,8 +11,8 @@ namespace freepath {
 
 /// Which methods to walk with, and how.
 struct WalkSettings {
-  std::string tracker = "delta";          ///< "name:option=value"; see tracker_infos().
-  std::string transmittance = "ratio";    ///< The same; see transmittance_infos().
+  std::string tracker = "delta";        ///< "name:option=value"; see tracker_infos().
+  std::string transmittance = "ratio";  ///< The same; see transmittance_infos().
   Interpolation interpolation = Interpolation::kStochastic;
   Absorption absorption = Absorption::kWeighted;
   EmissionTally emission = EmissionTally::kCollision;
@@ -31,9 +31,11 @@ class Walker {
   static constexpr int kAllChannels = -1;
 
   /// @param medium must outlive the walker
-  /// @param channel the one channel to carry, or kAllChannels, which needs an extinction that is the
+  /// @param channel the one channel to carry, or kAllChannels, which needs an extinction that is
+  /// the
   ///   same in all (Medium::has_grey_extinction)
-  /// @throws Error for methods, options or instructions that do not exist, and for kAllChannels in a
+  /// @throws Error for methods, options or instructions that do not exist, and for kAllChannels in
+  /// a
   ///   medium with chromatic extinction
   Walker(const Medium& medium, const WalkSettings& settings, int channel = kAllChannels);
 

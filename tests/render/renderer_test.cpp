@@ -18,13 +18,16 @@ std::shared_ptr<Field> lumpy_field() {
   Matrix4d index_to_world;
   index_to_world.setScale(Vec3d(0.1, 0.07, 0.12));
   index_to_world *= Matrix4d().rotate(Vec3d(0.3, 0.5, 0.2));
-  return make_field(Vec3i(-12), Vec3i(11), [](const Vec3i& p) {
-    const Vec3i brick(p.x >> 3, p.y >> 3, p.z >> 3);
-    const float lump = hash_noise(brick);
-    if (lump < 0.3F) return 0.0F;
-    if (lump < 0.4F) return 0.5F;
-    return hash_noise(p) * lump;
-  }, index_to_world);
+  return make_field(
+      Vec3i(-12), Vec3i(11),
+      [](const Vec3i& p) {
+        const Vec3i brick(p.x >> 3, p.y >> 3, p.z >> 3);
+        const float lump = hash_noise(brick);
+        if (lump < 0.3F) return 0.0F;
+        if (lump < 0.4F) return 0.5F;
+        return hash_noise(p) * lump;
+      },
+      index_to_world);
 }
 
 Component cloud(Spectrum sigma_a, Spectrum sigma_s, float g) {
@@ -170,15 +173,14 @@ TEST(Renderer, AbsorbingMediumLetsThroughItsTransmittance) {
   // A lens so long that all rays of the one pixel are alike.
   const View view{centre + Vec3d(0.05, 0.02, 6), centre + Vec3d(0.05, 0.02, 0), Vec3d(0, 1, 0),
                   1e-4};
-  const double tau = 4 * optical_depth(*medium.components()[0].density, view.from,
-                                       Vec3d(0, 0, -1), 12, Interpolation::kTrilinear);
+  const double tau = 4 * optical_depth(*medium.components()[0].density, view.from, Vec3d(0, 0, -1),
+                                       12, Interpolation::kTrilinear);
   for (const Interpolation interpolation :
        {Interpolation::kTrilinear, Interpolation::kStochastic}) {
     RenderSettings settings = settings_of(1 << 20);
     settings.walk.interpolation = interpolation;
     settings.walk.absorption = Absorption::kAnalog;
-    const RenderResult result =
-        render(medium, Camera(view, 1, 1), constant_light(2), settings);
+    const RenderResult result = render(medium, Camera(view, 1, 1), constant_light(2), settings);
     const PictureMean mean = picture_mean(result.film, 0);
     EXPECT_TRUE(check_mean("radiance", mean.mean, mean.error, result.paths, 2 * std::exp(-tau),
                            {.absolute = 1e-5, .largest_relative_error = 0.01}));
@@ -223,7 +225,8 @@ TEST(Renderer, PictureDependsOnSeedAndSamplesAlone) {
       for (const std::size_t batch : {1, 37, 2048}) {
         settings.threads = threads;
         settings.batch = batch;
-        EXPECT_EQ(picture_of(medium, settings), reference) << threads << " threads, batch " << batch;
+        EXPECT_EQ(picture_of(medium, settings), reference)
+            << threads << " threads, batch " << batch;
       }
     }
     settings.walk.seed = 12;

@@ -359,6 +359,7 @@ TEST(Extremes, RaysWithoutADirectionEscapeUntouched) {
   RayList list;
   for (const Vec3f& origin : {Vec3f(0.0F), Vec3f(1, 0, 0), Vec3f(-12.5F), Vec3f(100.0F)}) {
     for (const float t_max : {0.0F, 1.0F, kInfinity}) list.add(origin, Vec3f(0.0F), t_max, 5);
+    list.add(origin, Vec3f(1e-38F, 0, 0), kInfinity, 5);  // too short to move a point
   }
   const RayStream& rays = list.finish();
   for (const Medium& medium : {medium_of(box_field(), 1), medium_of(holes, 1)}) {

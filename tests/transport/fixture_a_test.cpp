@@ -54,16 +54,16 @@ std::size_t paths_for(const Case& test) {
   return std::string(test.tracker).find("0.7") != std::string::npos ? 2'000'000 : 400'000;
 }
 
-RunningStatistics estimate_radiance(const Medium& medium, const WalkSettings& settings,
-                                    int channel, std::size_t paths, WalkStatistics& statistics,
+RunningStatistics estimate_radiance(const Medium& medium, const WalkSettings& settings, int channel,
+                                    std::size_t paths, WalkStatistics& statistics,
                                     const std::array<double, 2>& planted = {1, 1}) {
   const Walker walker(medium, settings, channel);
   FlightStream flights;
   WalkScratch scratch;
   RunningStatistics result;
   for (std::size_t done = 0; done < paths; done += kBatch) {
-    const RayStream rays = repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, kBatch,
-                                      static_cast<uint32_t>(done));
+    const RayStream rays =
+        repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, kBatch, static_cast<uint32_t>(done));
     walker.free_paths(rays, flights, scratch, statistics);
     for (std::size_t i = 0; i < kBatch; ++i) result.add(radiance(flights, i, channel, planted));
   }
@@ -89,13 +89,13 @@ TEST(FixtureA, EveryTrackerReproducesTheRadiance) {
   for (const Case& test : cases) {
     for (int channel = 0; channel < 3; ++channel) {
       WalkStatistics statistics;
-      const RunningStatistics result = estimate_radiance(
-          fixture(), settings_for(test, Simd::kBest), channel, paths_for(test), statistics);
-      const std::string name = std::string(test.tracker) + ", channel " + std::to_string(channel) +
-                               (test.absorption == Absorption::kAnalog ? ", analog absorption"
-                                                                       : ", weighted absorption") +
-                               (test.emission == EmissionTally::kAnalog ? ", analog emission"
-                                                                        : ", collision emission");
+      const RunningStatistics result = estimate_radiance(fixture(), settings_for(test, Simd::kBest),
+                                                         channel, paths_for(test), statistics);
+      const std::string name =
+          std::string(test.tracker) + ", channel " + std::to_string(channel) +
+          (test.absorption == Absorption::kAnalog ? ", analog absorption"
+                                                  : ", weighted absorption") +
+          (test.emission == EmissionTally::kAnalog ? ", analog emission" : ", collision emission");
       EXPECT_TRUE(check_mean(name, result, FixtureA::kRadiance[channel],
                              {.z = threshold, .absolute = 2e-6, .largest_relative_error = 0.002}));
       EXPECT_EQ(statistics.bound_violations, 0U) << name;
@@ -129,8 +129,8 @@ TEST(FixtureA, OnePercentInAWeightIsNoticed) {
       for (int channel = 0; channel < 3; ++channel) {
         WalkStatistics statistics;
         const RunningStatistics result =
-            estimate_radiance(fixture(), settings_for(test, Simd::kBest), channel,
-                              paths_for(test), statistics, planted);
+            estimate_radiance(fixture(), settings_for(test, Simd::kBest), channel, paths_for(test),
+                              statistics, planted);
         largest_z = std::max(largest_z, std::abs(z_score(result.mean(), result.standard_error(),
                                                          FixtureA::kRadiance[channel])));
       }
@@ -153,9 +153,9 @@ TEST(FixtureA, EveryEstimatorReproducesTheTransmittance) {
       FlightStream flights;
       WalkScratch scratch;
       for (std::size_t done = 0; done < 1'000'000; done += kBatch) {
-        walker.transmittance(repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, kBatch,
-                                        static_cast<uint32_t>(done)),
-                             flights, scratch, statistics);
+        walker.transmittance(
+            repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, kBatch, static_cast<uint32_t>(done)),
+            flights, scratch, statistics);
         for (std::size_t i = 0; i < kBatch; ++i) result.add(flights.weight[0][i]);
       }
       EXPECT_TRUE(check_mean(method, result, std::exp(-FixtureA::kThickness[channel]),

@@ -35,7 +35,8 @@ inline std::shared_ptr<Field> make_field(const Vec3i& low, const Vec3i& high,
 
 /// Noise in [0,1) from a hash of the indices.
 inline float hash_noise(const Vec3i& p) {
-  uint32_t h = uint32_t(p.x) * 0x8DA6B343U ^ uint32_t(p.y) * 0xD8163841U ^ uint32_t(p.z) * 0xCB1AB31FU;
+  uint32_t h =
+      uint32_t(p.x) * 0x8DA6B343U ^ uint32_t(p.y) * 0xD8163841U ^ uint32_t(p.z) * 0xCB1AB31FU;
   h ^= h >> 16;
   h *= 0x7FEB352DU;
   h ^= h >> 15;
@@ -102,7 +103,8 @@ struct FixtureA {
   /// 1+x = 1(1-x) + 2x, 2-x = 2(1-x) + 1x, 0.5+x² = 0.5(1-x²) + 1.5x².
   static Medium medium(int super_voxel = 64) {
     std::vector<Component> components;
-    const auto add = [&](auto density, Spectrum sigma_a, Spectrum sigma_s, Spectrum emission) {
+    const auto add = [&](auto density, const Spectrum& sigma_a, const Spectrum& sigma_s,
+                         const Spectrum& emission) {
       Component component;
       Matrix4d index_to_world;
       index_to_world.setScale(Vec3d(1.0 / kVoxels, 1, 1));

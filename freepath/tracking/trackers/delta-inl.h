@@ -16,9 +16,12 @@ namespace freepath::HWY_NAMESPACE {
 /// P_e = mu_e/rate [Woodcock65]: real collisions happen with their own probability, and the weight
 /// of a null collision is exactly 1. Channels that share one extinction share the path.
 struct Delta {
-  static constexpr MethodInfo kInfo = {
-      "delta", "Woodcock's tracking: real collisions by rejection", "",
-      "if the rate bounds the extinction, as super-voxels do", "[Woodcock65]", {}};
+  static constexpr MethodInfo kInfo = {"delta",
+                                       "Woodcock's tracking: real collisions by rejection",
+                                       "",
+                                       "if the rate bounds the extinction, as super-voxels do",
+                                       "[Woodcock65]",
+                                       {}};
 
   explicit Delta(std::span<const float> /*options*/) {}
 
@@ -43,9 +46,9 @@ struct Delta {
     c.scatter_uniform = divide_or_zero(hn::Sub(chosen, scatter_begin), scatter_share);
     if (modes.emits) add_emission<N>(modes, sigma, collided, c);
     if (N == 1 && !weighted) return;  // every weight is 1
-    const VecF per_share =
-        hn::Div(set(1.0F), hn::IfThenElse(c.absorb, absorb,
-                                          hn::IfThenElse(c.scatter, scatter_share, set(1.0F))));
+    const VecF per_share = hn::Div(
+        set(1.0F),
+        hn::IfThenElse(c.absorb, absorb, hn::IfThenElse(c.scatter, scatter_share, set(1.0F))));
     for (int channel = 0; channel < N; ++channel) {
       const VecF coefficient =
           hn::IfThenElse(c.absorb, sigma.sigma_a[channel], sigma.sigma_s[channel]);
@@ -63,10 +66,10 @@ struct Delta {
     VecF share = hn::Div(set(1.0F), c.rate);
     if (modes.emission == EmissionTally::kAnalog) {
       const MaskF counted = emission_event<N>(modes, c, collided);
-      const VecF real = hn::Add(channel_mean<N>(sigma.sigma_a),
-                                modes.absorption == Absorption::kWeighted
-                                    ? channel_mean<N>(sigma.sigma_s)
-                                    : hn::Zero(kFloat));
+      const VecF real =
+          hn::Add(channel_mean<N>(sigma.sigma_a), modes.absorption == Absorption::kWeighted
+                                                      ? channel_mean<N>(sigma.sigma_s)
+                                                      : hn::Zero(kFloat));
       share = hn::IfThenElseZero(counted, divide_or_zero(set(1.0F), real));
     }
     for (int channel = 0; channel < N; ++channel) {

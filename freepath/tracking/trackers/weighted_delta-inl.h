@@ -17,10 +17,14 @@ namespace freepath::HWY_NAMESPACE {
 /// extinction: mu_n may be negative, and weights are ±(mu_t + |mu_n|)/rate.
 struct WeightedDelta {
   static constexpr MethodOption kOptions[] = {
-      {"rate-scale", 1.0F, 1e-3F, 1e3F, "rate of tentative collisions, as a multiple of the majorant"}};
+      {"rate-scale", 1.0F, 1e-3F, 1e3F,
+       "rate of tentative collisions, as a multiple of the majorant"}};
   static constexpr MethodInfo kInfo = {
-      "weighted-delta", "delta tracking by weights, whose rate need not be a bound", "",
-      "always; below a rate scale of 1 weights may be negative and grow", "[Kutz17, Sec. 4.2]",
+      "weighted-delta",
+      "delta tracking by weights, whose rate need not be a bound",
+      "",
+      "always; below a rate scale of 1 weights may be negative and grow",
+      "[Kutz17, Sec. 4.2]",
       kOptions};
 
   explicit WeightedDelta(std::span<const float> options) : rate_scale(options[0]) {}
@@ -35,8 +39,7 @@ struct WeightedDelta {
                           Collision<N>& c) const {
     VecF sigma_n[N];
     for (int channel = 0; channel < N; ++channel) {
-      sigma_n[channel] =
-          hn::Sub(c.rate, hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]));
+      sigma_n[channel] = hn::Sub(c.rate, hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]));
     }
     VecF probability[3] = {channel_mean<N>(sigma.sigma_a), channel_mean<N>(sigma.sigma_s),
                            hn::Abs(sigma_n[0])};

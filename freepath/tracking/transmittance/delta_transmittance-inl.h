@@ -16,9 +16,12 @@ namespace freepath::HWY_NAMESPACE {
 /// 1 if no real collision happens, else 0 [Woodcock65; Novak18, Sec. 5]. One extinction for all
 /// channels of the path.
 struct DeltaTransmittance {
-  static constexpr MethodInfo kInfo = {
-      "delta", "1 if the ray passes without a real collision, else 0", "",
-      "if the rate bounds the extinction, as super-voxels do", "[Novak18, Sec. 5]", {}};
+  static constexpr MethodInfo kInfo = {"delta",
+                                       "1 if the ray passes without a real collision, else 0",
+                                       "",
+                                       "if the rate bounds the extinction, as super-voxels do",
+                                       "[Novak18, Sec. 5]",
+                                       {}};
 
   explicit DeltaTransmittance(std::span<const float> /*options*/) {}
 

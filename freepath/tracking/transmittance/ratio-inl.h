@@ -17,11 +17,15 @@ namespace freepath::HWY_NAMESPACE {
 /// small, Russian roulette ends rays whose rest would cost more than it is worth.
 struct Ratio {
   static constexpr MethodOption kOptions[] = {
-      {"rate-scale", 1.0F, 1e-3F, 1e3F, "rate of tentative collisions, as a multiple of the majorant"},
+      {"rate-scale", 1.0F, 1e-3F, 1e3F,
+       "rate of tentative collisions, as a multiple of the majorant"},
       {"roulette", 0.1F, 0.0F, 1.0F, "weight below which Russian roulette is played, 0 for never"}};
-  static constexpr MethodInfo kInfo = {
-      "ratio", "the product of the null probabilities along the ray", "",
-      "always; below a rate scale of 1 estimates may be negative", "[Novak14, Eq. 14]", kOptions};
+  static constexpr MethodInfo kInfo = {"ratio",
+                                       "the product of the null probabilities along the ray",
+                                       "",
+                                       "always; below a rate scale of 1 estimates may be negative",
+                                       "[Novak14, Eq. 14]",
+                                       kOptions};
 
   explicit Ratio(std::span<const float> options) : rate_scale(options[0]), roulette(options[1]) {}
 
@@ -49,9 +53,9 @@ struct Ratio {
     const VecF survival = hn::Mul(largest, set(roulette > 0 ? 1.0F / roulette : 0.0F));
     const MaskF survives = hn::Lt(c.uniform, survival);
     c.absorb = hn::Or(hn::AndNot(survives, played), hn::Eq(largest, hn::Zero(kFloat)));
-    const VecF gain = hn::IfThenElse(
-        c.absorb, hn::Zero(kFloat),
-        hn::IfThenElse(played, divide_or_zero(set(1.0F), survival), set(1.0F)));
+    const VecF gain =
+        hn::IfThenElse(c.absorb, hn::Zero(kFloat),
+                       hn::IfThenElse(played, divide_or_zero(set(1.0F), survival), set(1.0F)));
     for (int channel = 0; channel < N; ++channel) {
       c.weight[channel] = hn::Mul(c.weight[channel], gain);
     }
