@@ -234,7 +234,10 @@ void add_picture_options(CLI::App& command, Options& o) {
   command.add_option("--spp", o.samples, "Samples per pixel [64]")
       ->check(CLI::Range(1U, 1U << 30))
       ->group("Picture");
-  command.add_option("--time", o.time_limit, "Seconds to render; with --spp, whichever ends first")
+  command
+      .add_option("--time", o.time_limit,
+                  "Seconds to render, but at least one sample per pixel; with --spp, whichever "
+                  "ends first")
       ->check(kFiniteNumber & CLI::PositiveNumber)
       ->group("Picture");
   command.add_option("--exposure", o.exposure, "Exposure of a .png [stops]")

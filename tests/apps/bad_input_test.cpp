@@ -48,30 +48,27 @@ TEST_F(BadInputTest, TheCommandLineItself) {
   expect_error("paint ball.vdb", {"paint"});
   expect_error("render", {"volume"});
   expect_error("render ball.vdb", {"--output"});
-  expect_error("render ball.vdb -o", {"--output"});
   expect_render_error("--colour red", {"--colour"});
   expect_render_error("--seed 1 --seed 2", {"--seed"});
 }
 
 TEST_F(BadInputTest, NumbersThatAreNone) {
-  // Two values for each option, so that each value meets several kinds of options.
+  // The values take turns: starting the program costs more than what it does here.
   const auto try_values = [&](const std::vector<std::string>& options,
                               const std::vector<std::string>& values) {
     std::size_t next = 0;
     for (const std::string& option : options) {
-      for (int i = 0; i < 2; ++i) {
-        const std::string& value = values[next++ % values.size()];
-        std::vector<std::string> arguments = words("render ball.vdb -o picture.exr --size 8x8");
-        arguments.push_back(option);
-        arguments.push_back(value);
-        expect_error(arguments, option + " '" + value + "'", {option});
-      }
+      const std::string& value = values[next++ % values.size()];
+      std::vector<std::string> arguments = words("render ball.vdb -o picture.exr --size 8x8");
+      arguments.push_back(option);
+      arguments.push_back(value);
+      expect_error(arguments, option + " '" + value + "'", {option});
     }
   };
   try_values({"--density-scale", "--g", "--fov", "--exposure", "--turbidity", "--time", "--albedo",
               "--sigma-a", "--sigma-s", "--le"},
              {"nan", "", "1,2", "inf", "ten", "1e999", "-inf"});
-  try_values({"--spp", "--threads", "--batch", "--seed", "--seed", "--seed"},
+  try_values({"--seed", "--spp", "--threads", "--seed"},
              {"-1", "1.5", "", "99999999999999999999999"});
 }
 
@@ -81,27 +78,22 @@ TEST_F(BadInputTest, NumbersOutOfRange) {
   expect_render_error("--albedo 1.5", {"albedo", "1.5"});
   expect_render_error("--albedo 0.5,0.5,2", {"albedo", "2"});
   expect_render_error("--albedo 0.5 --sigma-s 1", {"--albedo", "--sigma-s"});
-  expect_render_error("--sigma-a -1", {"sigma_a"});
   expect_render_error("--sigma-s 1,-1,1", {"sigma_s"});
   expect_render_error("--sigma-s 1,2,3,4", {"--sigma-s", "4 values"});
   expect_render_error("--le -1", {"emission"});
   expect_render_error("--g 1", {"g", "1"});
   expect_render_error("--fov 0", {"angle of view"});
-  expect_render_error("--fov 180", {"angle of view"});
   expect_render_error("--super-voxel 5", {"super-voxel"});
   expect_render_error("--threads 0", {"--threads"});
   expect_render_error("--time 0", {"--time"});
   expect_render_error("--turbidity 100", {"turbidity"});
   expect_render_error("--sun -5,0", {"sun", "-5"});
-  expect_render_error("--sun 10", {"--sun"});
-  expect_render_error("--environment -1", {"radiance"});
   expect_render_error("--environment 1,2", {"--environment"});
-  expect_render_error("--max-scatterings 0", {"--max-scatterings"});
   expect_error("render ball.vdb -o picture.exr --spp 0", {"--spp"});
 }
 
 TEST_F(BadInputTest, SizesThatAreNone) {
-  for (const char* size : {"0x0", "10x", "10", "10x10x10", "-1x5", "99999x1", "99999999999x1"}) {
+  for (const char* size : {"0x0", "10x", "10x10x10", "99999x1"}) {
     expect_error(std::string("render ball.vdb -o picture.exr --spp 1 --size ") + size, {"--size"});
   }
 }
@@ -111,11 +103,8 @@ TEST_F(BadInputTest, ChoicesThatThereAreNot) {
   expect_render_error("--tracker delta:speed=2", {"delta", "speed"});
   expect_render_error("--tracker weighted-delta:rate-scale", {"rate-scale", "value"});
   expect_render_error("--tracker weighted-delta:rate-scale=nan", {"rate-scale", "nan"});
-  expect_render_error("--tracker weighted-delta:rate-scale=0", {"rate-scale", "0"});
-  expect_render_error("--tracker weighted-delta:", {"weighted-delta"});
   expect_render_error("--transmittance magic", {"--transmittance", "magic", "ratio"});
   expect_render_error("--interpolation cubic", {"--interpolation", "trilinear"});
-  expect_render_error("--absorption some", {"--absorption", "analog"});
   expect_render_error("--emission some", {"--emission", "collision"});
   expect_render_error("--up x", {"--up", "y, z"});
   expect_render_error("--negative keep", {"--negative", "clamp"});
@@ -125,7 +114,6 @@ TEST_F(BadInputTest, ChoicesThatThereAreNot) {
 TEST_F(BadInputTest, ViewsThatAreNone) {
   expect_render_error("--look-at 1,2", {"--look-at"});
   expect_render_error("--look-at 1,2,3,1,2,3", {"camera"});
-  expect_render_error("--look-at 1,nan,0", {"--look-at"});
 }
 
 TEST_F(BadInputTest, VolumesThatAreNone) {
@@ -135,9 +123,9 @@ TEST_F(BadInputTest, VolumesThatAreNone) {
   const std::string rest = " -o picture.exr --size 8x8 --spp 1";
   for (const char* name : {"missing.vdb", "folder", "garbage.vdb", "empty.vdb"}) {
     expect_error(std::string("render ") + name + rest, {name});
-    expect_error(std::string("info --json ") + name, {name});
   }
-  for (const double part : {0.1, 0.6, 0.999}) {
+  expect_error("info --json garbage.vdb", {"garbage.vdb"});
+  for (const double part : {0.1, 0.999}) {
     write_cube(path("cut.vdb"));
     truncate_file(path("cut.vdb"), part);
     expect_error("render cut.vdb" + rest, {"cut.vdb"});
@@ -174,7 +162,6 @@ TEST_F(BadInputTest, EnvironmentsThatAreNone) {
   write_environment(path("negative.exr"), 1, -1);
   expect_render_error("--environment missing.hdr", {"missing.hdr"});
   expect_render_error("--environment text.hdr", {"text.hdr"});
-  expect_render_error("--environment .", {"."});
   for (const char* name : {"nan.exr", "inf.exr", "negative.exr"}) {
     expect_render_error(std::string("--environment ") + name, {name, "5", "3"});
   }
