@@ -4,11 +4,14 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/parse.h"
+#include "freepath/base/error.h"
 #include "freepath/io/volume_write.h"
 #include "freepath/scene/procedural.h"
 
@@ -45,6 +48,10 @@ void show_progress(double fraction) {
 }
 
 void run(Options& options) {
+  if (std::filesystem::path(options.output).extension() != ".vdb") {
+    fail("{}: a volume is written as OpenVDB; give the file a name that ends in .vdb",
+         options.output);
+  }
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) options.volume.progress = show_progress;
   const std::vector<Field> fields = kGenerators.at(options.kind)(options.volume);
@@ -70,7 +77,8 @@ void add_generate_command(CLI::App& program) {
                    "Voxels along the longest side, 16 to 2048")
       ->capture_default_str();
   command->add_option("--seed", options->volume.seed, "Another seed, another volume")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(kWholeNumber);
   command->add_flag("--half", options->half, "Store values in half precision");
   command->callback([options] { run(*options); });
 }

@@ -181,6 +181,23 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
   expect_error(render + "picture.exr --stats ball.vdb", {"ball.vdb", "--stats"});
 }
 
+TEST_F(BadInputTest, VolumesThatCannotBeGenerated) {
+  expect_error("generate tree -o tree.vdb", {"tree", "cloud"});
+  expect_error("generate cloud", {"--output"});
+  expect_error("generate cloud -o picture.exr", {"picture.exr", ".vdb"});
+  expect_error("generate cloud -o missing/cloud.vdb", {"missing"});
+  expect_error("generate cloud -o cloud.vdb --resolution 0", {"resolution", "16"});
+  expect_error("generate cloud -o cloud.vdb --seed -1", {"--seed", "-1"});
+}
+
+TEST_F(BadInputTest, SlabsThatAreNone) {
+  expect_error("slab --tau -1", {"tau", "-1"});
+  expect_error("slab --tau nan", {"--tau"});
+  expect_error("slab --tau 1e30", {"tau"});
+  expect_error("slab --tau inf --albedo 1", {"half-space", "albedo"});
+  expect_error("slab --tau 1,2 --albedo 0.1,0.2,0.3", {"--albedo", "3 values"});
+}
+
 TEST_F(BadInputTest, OldPicturesSurviveAnError) {
   write_text(path("picture.exr"), "old");
   expect_render_error("--grid smoke", {"smoke"});
