@@ -74,21 +74,21 @@ class TreeWalk {
     return children;
   }
 
-  template <class Node, int Side, int EntrySize>
+  template <class Node, int kSide, int kEntrySize>
   void read_node(const NodePlace& place, std::vector<NodePlace>& children) {
     bytes_->read(place.offset, buffer_.resize(sizeof(Node)));
     const Node& node = buffer_.node<Node>(0);
-    for (int entry = 0; entry < Side * Side * Side; ++entry) {
+    for (int entry = 0; entry < kSide * kSide * kSide; ++entry) {
       const bool child = node.mChildMask.isOn(entry);
       if (!child && !node.mValueMask.isOn(entry)) continue;
       const Vec3i origin =
           place.origin +
-          Vec3i(entry / (Side * Side), entry / Side % Side, entry % Side) * EntrySize;
+          Vec3i(entry / (kSide * kSide), entry / kSide % kSide, entry % kSide) * kEntrySize;
       if (child) {
         children.push_back(
             {place.offset + static_cast<uint64_t>(node.mTable[entry].child), origin});
       } else {
-        layout.tiles.push_back({origin, EntrySize, static_cast<double>(node.mTable[entry].value)});
+        layout.tiles.push_back({origin, kEntrySize, static_cast<double>(node.mTable[entry].value)});
       }
     }
   }
@@ -187,7 +187,7 @@ ValueScan take_chunk(const VolumeFile& file, const LeafChunk& chunk,
     }
     uint64_t mask[8];
     static_assert(sizeof(leaf.mValueMask) == sizeof(mask));
-    std::memcpy(mask, &leaf.mValueMask, sizeof(mask));
+    std::memcpy(mask, static_cast<const void*>(&leaf.mValueMask), sizeof(mask));
     assembly.take_leaf(i, values.data(), mask, scan);
   }
   return scan;
