@@ -58,9 +58,9 @@ struct Choice {
 [[noreturn]] void fail_choice(std::string_view text, std::string_view option,
                               const std::vector<std::string_view>& names);
 
-template <class Value, std::size_t N>
+template <class Value, std::size_t kCount>
 Value parse_choice(std::string_view text, std::string_view option,
-                   const std::array<Choice<Value>, N>& choices) {
+                   const std::array<Choice<Value>, kCount>& choices) {
   std::vector<std::string_view> names;
   for (const Choice<Value>& choice : choices) {
     if (choice.name == text) return choice.value;

@@ -62,7 +62,7 @@ TEST_F(BadInputTest, NumbersThatAreNone) {
       std::vector<std::string> arguments = words("render ball.vdb -o picture.exr --size 8x8");
       arguments.push_back(option);
       arguments.push_back(value);
-      expect_error(arguments, option + " '" + value + "'", {option});
+      expect_error(arguments, ::testing::PrintToString(arguments), {option});
     }
   };
   try_values({"--density-scale", "--g", "--fov", "--exposure", "--turbidity", "--time", "--albedo",

@@ -20,7 +20,7 @@ class CommandsTest : public ProgramTest {
   json run_json(const std::string& line) const {
     const Outcome outcome = run(line);
     EXPECT_EQ(outcome.status, 0) << line << '\n' << outcome;
-    const json object = json::parse(outcome.output, nullptr, false);
+    json object = json::parse(outcome.output, nullptr, false);
     EXPECT_TRUE(object.is_object()) << line << '\n' << outcome;
     return object;
   }
@@ -55,14 +55,14 @@ TEST_F(CommandsTest, InfoTellsOfEachGrid) {
 
 TEST_F(CommandsTest, GenerateWritesWhatRenderReads) {
   for (const std::string kind : {"cloud", "smoke", "fireball"}) {
-    const Outcome outcome = run("generate " + kind + " -o " + kind + ".vdb --resolution 32");
+    const Outcome outcome = run("generate " + kind + " -o made.vdb --resolution 32");
     EXPECT_EQ(outcome.status, 0) << kind << '\n' << outcome;
-    const json info = run_json("info " + kind + ".vdb --json");
+    const json info = run_json("info made.vdb --json");
     std::vector<std::string> names;
     for (const json& grid : info["grids"]) names.push_back(grid["name"]);
     EXPECT_EQ(names, kind == "fireball" ? std::vector<std::string>({"density", "temperature"})
                                         : std::vector<std::string>({"density"}));
-    const Outcome rendered = run("render " + kind + ".vdb -o " + kind + ".exr --size 8x8 --spp 1");
+    const Outcome rendered = run("render made.vdb -o picture.exr --size 8x8 --spp 1");
     EXPECT_EQ(rendered.status, 0) << rendered;
   }
 }

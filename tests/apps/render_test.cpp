@@ -149,9 +149,10 @@ TEST_F(RenderTest, FurnaceIsOneWithEveryMethod) {
     for (const std::string estimators : {"--transmittance ratio --interpolation nearest",
                                          "--transmittance delta --interpolation trilinear",
                                          "--transmittance ratio --interpolation stochastic"}) {
-      const std::string options =
-          "--albedo 1 --environment 1 --g 0.5 " + estimators + " --tracker " + tracker;
-      expect_mean_one(render(options + " --spp 64"), options);
+      std::string options = "--albedo 1 --environment 1 --g 0.5 --spp 64 --tracker ";
+      options += tracker;
+      options += ' ' + estimators;
+      expect_mean_one(render(options), options);
     }
   }
 }
@@ -164,8 +165,10 @@ TEST_F(RenderTest, FurnaceThatAbsorbsAndEmitsIsOneWithEveryMethod) {
         "--tracker weighted-delta --absorption weighted --emission analog",
         "--tracker weighted-delta --absorption analog --emission collision"}) {
     for (const std::string optics : {"--albedo 0.5", "--sigma-a 0.5,1,0 --sigma-s 1,0.5,0.25"}) {
-      const std::string options = optics + " --environment 1 --le 1 " + methods;
-      expect_mean_one(render(options + " --spp 64"), options);
+      std::string options = "--environment 1 --le 1 --spp 64 ";
+      options += optics;
+      options += ' ' + methods;
+      expect_mean_one(render(options), options);
     }
   }
 }
