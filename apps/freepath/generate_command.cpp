@@ -57,6 +57,7 @@ void run(Options& options) {
   const std::vector<Field> fields = kGenerators.at(options.kind)(options.volume);
   if (terminal) fmt::print(stderr, "\r              \r");
   std::vector<const Field*> pointers;
+  pointers.reserve(fields.size());
   for (const Field& field : fields) pointers.push_back(&field);
   write_vdb(options.output, pointers, {.half = options.half});
 }
