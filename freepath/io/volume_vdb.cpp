@@ -29,8 +29,8 @@ constexpr std::size_t kLeafMaskBytes = 64;
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
 void initialize_openvdb() {
-  static const bool done = (openvdb::initialize(), true);
-  static_cast<void>(done);
+  static const bool kDone = (openvdb::initialize(), true);
+  static_cast<void>(kDone);
 }
 
 /// A stream over bytes in memory.
@@ -81,7 +81,7 @@ template <class Mask>
 Mask mask_from(std::span<const std::byte> bytes) {
   Mask mask;
   for (openvdb::Index word = 0; word < Mask::WORD_COUNT; ++word) {
-    std::memcpy(&mask.template getWord<uint64_t>(word), bytes.data() + 8 * word, 8);
+    std::memcpy(&mask.template getWord<uint64_t>(word), bytes.data() + std::size_t{8} * word, 8);
   }
   return mask;
 }
@@ -131,22 +131,22 @@ class TopologyWalk {
     layout_.tiles.push_back({origin, size, static_cast<double>(value)});
   }
 
-  /// A node with 2^Log2 entries a side, whose children have the sizes that follow.
-  template <int Log2, int... Children>
+  /// A node with 2^kLog2 entries a side, whose children have the sizes that follow.
+  template <int kLog2, int... kChildren>
   void read_node(const Vec3i& origin) {
-    if constexpr (sizeof...(Children) == 0) {
+    if constexpr (sizeof...(kChildren) == 0) {
       cursor_.skip(kLeafMaskBytes);  // the mask stands before the leaf's values again
       layout_.leaves.push_back(origin);
     } else {
-      read_inner_node<Log2, Children...>(origin);
+      read_inner_node<kLog2, kChildren...>(origin);
     }
   }
 
-  template <int Log2, int Child, int... Deeper>
+  template <int kLog2, int kChild, int... kDeeper>
   void read_inner_node(const Vec3i& origin) {
-    using Mask = openvdb::util::NodeMask<Log2>;
+    using Mask = openvdb::util::NodeMask<kLog2>;
     constexpr std::size_t kMaskBytes = Mask::SIZE / 8;
-    constexpr int kEntrySize = 1 << (Child + (0 + ... + Deeper));
+    constexpr int kEntrySize = 1 << (kChild + (0 + ... + kDeeper));
     const auto children = mask_from<Mask>(cursor_.peek(0, kMaskBytes));
     const auto active = mask_from<Mask>(cursor_.peek(kMaskBytes, kMaskBytes));
     cursor_.skip(2 * kMaskBytes);
@@ -156,21 +156,21 @@ class TopologyWalk {
       decoder_.decode(cursor_.peek(0, block), active, std::span(values));
       for (auto entry = active.beginOn(); entry; ++entry) {
         if (children.isOn(entry.pos())) continue;
-        add_tile(entry_origin<Log2>(origin, entry.pos(), kEntrySize), kEntrySize,
+        add_tile(entry_origin<kLog2>(origin, entry.pos(), kEntrySize), kEntrySize,
                  values[entry.pos()]);
       }
     }
     cursor_.skip(block);
     for (auto entry = children.beginOn(); entry; ++entry) {
-      read_node<Child, Deeper...>(entry_origin<Log2>(origin, entry.pos(), kEntrySize));
+      read_node<kChild, kDeeper...>(entry_origin<kLog2>(origin, entry.pos(), kEntrySize));
     }
   }
 
-  template <int Log2>
+  template <int kLog2>
   static Vec3i entry_origin(const Vec3i& origin, uint32_t entry, int size) {
-    constexpr uint32_t kLast = (1U << Log2) - 1;
-    return origin + Vec3i(static_cast<int>(entry >> (2 * Log2)),
-                          static_cast<int>((entry >> Log2) & kLast),
+    constexpr uint32_t kLast = (1U << kLog2) - 1;
+    return origin + Vec3i(static_cast<int>(entry >> (2 * kLog2)),
+                          static_cast<int>((entry >> kLog2) & kLast),
                           static_cast<int>(entry & kLast)) *
                         size;
   }

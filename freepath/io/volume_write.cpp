@@ -42,7 +42,7 @@ void add_brick(std::span<const float> voxels, const openvdb::Coord& origin,
 }
 
 FloatGrid::Ptr grid_of(const Field& field, const VdbWriteOptions& options) {
-  const auto grid = FloatGrid::create(0.0F);
+  auto grid = FloatGrid::create(0.0F);
   grid->setName(field.name);
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setSaveFloatAsHalf(options.half);

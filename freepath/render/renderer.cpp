@@ -20,8 +20,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Paths of a job: enough to fill a wavefront many times over, so that its end, where lanes idle,
-/// does not count; few enough to share a pass evenly among the threads.
-constexpr std::size_t kPathsPerJob = 32768;
+/// counts little; few enough to share a pass evenly and to stop soon when asked to.
+constexpr std::size_t kPathsPerJob = 8192;
 constexpr uint32_t kMaxSamplesPerPass = 256;
 constexpr double kSecondsPerPass = 2;
 constexpr double kSecondsBetweenReports = 0.1;

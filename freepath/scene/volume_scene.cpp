@@ -42,9 +42,10 @@ std::vector<Vec3d> occupied_corners(const Field& field) {
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d point;
       for (int axis = 0; axis < 3; ++axis) {
-        point[axis] = (corner >> axis & 1) != 0
-                          ? std::min(first[axis] + BrickMap::kBrickSize - 1, map.active_max()[axis])
-                          : std::max(first[axis], map.active_min()[axis]);
+        point[axis] =
+            (corner >> axis & 1) != 0
+                ? std::min(first[axis] + BrickMap::kBrickSize - 1, map.active_max()[axis]) + 0.5
+                : std::max(first[axis], map.active_min()[axis]) - 0.5;
       }
       corners.push_back(point * field.index_to_world);
     }
@@ -71,6 +72,25 @@ Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
   return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
 }
 
+/// Beyond this many mean free paths across a volume single precision no longer tells one tentative
+/// collision from the next, and a walk would not get on.
+constexpr double kLargestOpticalDepth = 4e6;
+
+void check_optical_depth(const Medium& medium) {
+  const Component& component = medium.components()[0];
+  const std::vector<float>& maxima = medium.super_voxels().maxima;
+  const double densest = *std::max_element(maxima.begin(), maxima.end());
+  const double depth =
+      densest * largest(component.sigma_t()) * medium.world_bounds().size().length();
+  if (depth > kLargestOpticalDepth) {
+    fail(
+        "grid '{}': its largest density, {}, makes an optical depth of {:.3g} across the volume, "
+        "more "
+        "than {:.0e}: take a smaller --density-scale or smaller coefficients",
+        component.density->name, densest, depth, kLargestOpticalDepth);
+  }
+}
+
 }  // namespace
 
 Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel) {
@@ -82,7 +102,9 @@ Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel
   component.g = optics.g;
   component.emission = optics.emission;
   set_coefficients(optics, component);
-  return Medium({component}, super_voxel);
+  Medium medium({component}, super_voxel);
+  check_optical_depth(medium);
+  return medium;
 }
 
 Camera make_camera(const Field& field, const CameraOptions& options, UpAxis up) {
