@@ -124,7 +124,8 @@ void PathWavefront::start_path(const PathJob& job, std::size_t number, std::size
                       stream_number(StreamPurpose::kCamera, 0));
   const auto width = static_cast<std::size_t>(setup_.camera->width());
   const float x = static_cast<float>(pixel % width) + random.uniform();
-  const float y = static_cast<float>(pixel / width) + random.uniform();
+  const std::size_t row = pixel / width;
+  const float y = static_cast<float>(row) + random.uniform();
   const CameraRay ray = setup_.camera->ray(x, y);
   set_ray(rays_, slot, Vec3f(ray.origin), ray.direction);
 

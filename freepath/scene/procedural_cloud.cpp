@@ -16,6 +16,7 @@ namespace {
 
 /// Spheres around the upper surface of another, where a cloud grows. The parent is a copy, since it
 /// may stand among the spheres that are added to.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the copy is meant, see above
 void grow(Sphere parent, int count, float smallest, float largest, Sequence& random,
           std::vector<Sphere>& spheres) {
   for (int i = 0; i < count; ++i) {

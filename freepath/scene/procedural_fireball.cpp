@@ -83,7 +83,7 @@ bool Fireball::sample(const GridShape& shape, const BrickPlace& place,
     const Sample found = at(shape.centre(voxel), near);
     if (found.density <= 0) continue;
     values[static_cast<std::size_t>(i)] = found.density;
-    values[static_cast<std::size_t>(i + BrickMap::kBrickVoxels)] = found.temperature;
+    values[static_cast<std::size_t>(i) + BrickMap::kBrickVoxels] = found.temperature;
     any = true;
   }
   return any;
