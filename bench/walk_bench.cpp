@@ -4,10 +4,11 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <time.h>
 
+#include <ctime>
 #include <exception>
 #include <memory>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -110,13 +111,13 @@ std::vector<Row> make_rows(const Problem& problem, Estimate estimate) {
   add_nanovdb("scalar, NanoVDB, trilinear", Interpolation::kTrilinear);
   add_nanovdb("scalar, NanoVDB, stochastic", Interpolation::kStochastic);
   const std::vector<Simd> available = available_simd();
-  for (auto simd = available.rbegin(); simd != available.rend(); ++simd) {
+  for (const Simd simd : std::ranges::reverse_view(available)) {
     for (const auto& [name, interpolation] :
          {std::pair("trilinear", Interpolation::kTrilinear),
           std::pair("stochastic", Interpolation::kStochastic)}) {
       rows.push_back(
-          {fmt::format("walk, {}, {}", to_string(*simd), name),
-           std::make_shared<StreamVariant>(problem.medium, estimate, interpolation, *simd)});
+          {fmt::format("walk, {}, {}", to_string(simd), name),
+           std::make_shared<StreamVariant>(problem.medium, estimate, interpolation, simd)});
     }
   }
   return rows;
@@ -162,7 +163,7 @@ Table make_table(const Problem& problem, Estimate estimate) {
                                                 &problem](benchmark::State& state) {
       time_variant(state, *variant, problem.rays);
     })->Unit(benchmark::kMillisecond);
-    table.tallies.push_back([variant = row.variant, &problem] {
+    table.tallies.emplace_back([variant = row.variant, &problem] {
       Tally tally;
       for (const RayStream& stream : problem.rays) tally.merge(variant->tally(stream));
       return tally;
