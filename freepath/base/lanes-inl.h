@@ -8,6 +8,7 @@
 #define FREEPATH_BASE_LANES_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -54,6 +55,13 @@ HWY_INLINE void assign(VecF& target, MaskF mask, VecF value) {
 }
 HWY_INLINE void assign(VecI& target, MaskF mask, VecI value) {
   target = hn::IfThenElse(int_mask(mask), value, target);
+}
+
+/// Asks for base[places[lane]] of every lane.
+template <class T>
+HWY_INLINE void prefetch_lanes(const T* base, const int32_t (&places)[kLanes]) {
+  HWY_FENCE;  // the places come from memory: taking them out of a vector costs more
+  for (size_t lane = 0; lane < kLanes; ++lane) hwy::Prefetch(base + places[lane]);
 }
 
 /// Deals the elements of arrays out to chosen lanes: the n-th of those lanes gets the n-th element.
@@ -103,6 +111,14 @@ class Dealer {
   MaskF lanes_;
   Indices indices_;
 };
+
+/// Whole numbers in [0, 2^23) as integers. Others give what no caller may use; a conversion that
+/// saturates them would cost three times as much.
+HWY_INLINE VecI small_to_int(VecF whole) {
+  constexpr float kOffset = 0x1p23F;  // whose mantissa's last bit is 1
+  return hn::Sub(hn::BitCast(kInt, hn::Add(whole, hn::Set(kFloat, kOffset))),
+                 hn::BitCast(kInt, hn::Set(kFloat, kOffset)));
+}
 
 HWY_INLINE VecF set(float value) { return hn::Set(kFloat, value); }
 

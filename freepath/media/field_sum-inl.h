@@ -9,8 +9,6 @@
 #define FREEPATH_MEDIA_FIELD_SUM_INL_H_
 #endif
 
-#include <hwy/cache_control.h>
-
 #include "freepath/base/lanes-inl.h"
 #include "freepath/media/medium_view.h"
 
@@ -52,12 +50,16 @@ class FieldSum {
     }
   }
 
-  /// @param record place of the super-voxel's record in Medium::walk_cells()
-  HWY_INLINE Bounds bounds(VecI record) const {
+  /// @param segment with the place of the super-voxel's record in Medium::walk_cells(), and its
+  ///   first number, which is negative in an empty cell
+  template <class Segment>
+  HWY_INLINE Bounds bounds(const Segment& segment) const {
     Bounds bounds;
     for (int channel = 0; channel < N; ++channel) bounds.majorant[channel] = hn::Zero(kFloat);
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF density = hn::GatherIndex(kFloat, medium_.cells + k, record);
+      const VecF density =
+          k == 0 ? hn::Max(segment.head, hn::Zero(kFloat))
+                 : hn::GatherIndex(kFloat, medium_.cells + k, segment.record);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
         const float sigma_t = component.sigma_a[channel] + component.sigma_s[channel];
@@ -82,7 +84,7 @@ class FieldSum {
       if (medium_.interpolation != Interpolation::kNearest) place = hn::Sub(place, set(0.5F));
       place = hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last_voxel_[axis]));
       const VecF base = hn::Floor(place);
-      voxel[axis] = hn::ConvertTo(kInt, base);
+      voxel[axis] = small_to_int(base);
       const VecF fraction = hn::Sub(place, base);
       if (medium_.interpolation == Interpolation::kStochastic) {
         // 21 bits an axis, in the middle of their interval so that rounding favours no side.
@@ -100,9 +102,7 @@ class FieldSum {
     const VecI entry = brick_entry(voxel);
     hn::Store(entry, kInt, state.entry);
     for (int k = 0; k < medium_.component_count; ++k) {
-      for (size_t lane = 0; lane < kLanes; ++lane) {
-        hwy::Prefetch(medium_.components[k].index + state.entry[lane]);
-      }
+      prefetch_lanes(medium_.components[k].index, state.entry);
     }
   }
 
@@ -115,9 +115,7 @@ class FieldSum {
     for (int k = 0; k < medium_.component_count; ++k) {
       const VecI address = voxel_address(k, entry, within);
       hn::Store(address, kInt, state.address[k]);
-      for (size_t lane = 0; lane < kLanes; ++lane) {
-        hwy::Prefetch(medium_.components[k].voxels + state.address[k][lane]);
-      }
+      prefetch_lanes(medium_.components[k].voxels, state.address[k]);
     }
   }
 

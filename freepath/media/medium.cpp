@@ -54,15 +54,11 @@ double voxel_edge(const Matrix4d& index_to_world) {
 }
 
 /// @return Medium::walk_cells()
-std::vector<float> interleave(const SuperVoxels& cells) {
-  const std::size_t components = cells.components;
-  std::vector<float> records;
-  records.reserve(cells.cell_count() * (components + 1));
+Medium::WalkCells mark_empty_cells(const SuperVoxels& cells) {
+  Medium::WalkCells records(cells.maxima.begin(), cells.maxima.end());
   for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
-    for (std::size_t k = 0; k < components; ++k) {
-      records.push_back(cells.maxima[cell * components + k]);
-    }
-    records.push_back(static_cast<float>(cells.empty_radius[cell]));
+    const int radius = cells.empty_radius[cell];
+    if (radius > 0) records[cell * cells.components] = static_cast<float>(-radius);
   }
   return records;
 }
@@ -85,7 +81,7 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
         static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
   }
   super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
-  walk_cells_ = interleave(super_voxels_);
+  walk_cells_ = mark_empty_cells(super_voxels_);
 
   if (!world_to_index) {
     const double determinant = index_to_world.determinant();

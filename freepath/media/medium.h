@@ -9,6 +9,7 @@
 #include "freepath/base/spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/media/field.h"
+#include "freepath/media/page_allocator.h"
 #include "freepath/media/super_voxels.h"
 
 namespace freepath {
@@ -55,9 +56,10 @@ class Medium {
   const std::vector<Component>& components() const { return components_; }
   const SuperVoxels& super_voxels() const { return super_voxels_; }
 
-  /// What a step of a walk reads of a super-voxel, side by side so that it costs one cache line:
-  /// the maxima of the components, then the empty radius. Entry: cell · (components + 1).
-  const std::vector<float>& walk_cells() const { return walk_cells_; }
+  /// What a step of a walk reads of a super-voxel: the maxima of the components, or, where all of
+  /// them are 0, the empty radius negated in place of the first. Entry: cell · components.
+  using WalkCells = std::vector<float, PageAllocator<float>>;
+  const WalkCells& walk_cells() const { return walk_cells_; }
 
   /// World space → walk space, whose unit is the edge of a super-voxel and whose cells are those of
   /// the super-voxels.
@@ -78,7 +80,7 @@ class Medium {
  private:
   std::vector<Component> components_;
   SuperVoxels super_voxels_;
-  std::vector<float> walk_cells_;
+  WalkCells walk_cells_;
   AffineMap world_to_walk_;
 };
 

@@ -10,9 +10,12 @@ namespace {
 
 constexpr std::size_t kSmallPage = 4096;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
+/// Arrays from this size on get huge pages, though they may fill but a part of one: a random read
+/// costs more in address translation than that memory is worth.
+constexpr std::size_t kWorthHuge = kHugePage / 8;
 
 std::size_t rounded(std::size_t bytes) {
-  const std::size_t page = bytes >= kHugePage ? kHugePage : kSmallPage;
+  const std::size_t page = bytes >= kWorthHuge ? kHugePage : kSmallPage;
   if (bytes > std::numeric_limits<std::size_t>::max() - 2 * kHugePage) throw std::bad_alloc();
   return (bytes + page - 1) / page * page;
 }

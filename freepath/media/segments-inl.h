@@ -8,8 +8,6 @@
 #define FREEPATH_MEDIA_SEGMENTS_INL_H_
 #endif
 
-#include <hwy/cache_control.h>
-
 #include "freepath/base/lanes-inl.h"
 #include "freepath/media/medium_view.h"
 
@@ -23,7 +21,7 @@ struct SegmentCursor {
   VecF inverse[3];    ///< 1/direction, huge where that is 0
   VecF t;             ///< Distance from the origin [world].
   VecF end;           ///< Where the ray leaves the medium or ends [world].
-  VecI cell[3];       ///< Super-voxel that holds the point at t.
+  VecF cell[3];       ///< Super-voxel that holds the point at t; whole numbers.
   VecI record;        ///< Place of its record in Medium::walk_cells().
 };
 
@@ -34,17 +32,18 @@ struct SegmentState {
   HWY_ALIGN_MAX float inverse[3][kLanes];
   HWY_ALIGN_MAX float t[kLanes];
   HWY_ALIGN_MAX float end[kLanes];
-  HWY_ALIGN_MAX int32_t cell[3][kLanes];
+  HWY_ALIGN_MAX float cell[3][kLanes];
   HWY_ALIGN_MAX int32_t record[kLanes];
 };
 
 /// A segment: the part of a ray in one super-voxel, or in one empty cube of them.
 struct Segment {
   VecI record;        ///< Place of the super-voxel's record in Medium::walk_cells().
+  VecF head;          ///< First number of that record.
   VecF exit;          ///< Where it ends [world].
-  VecI low[3];        ///< First cell along each axis.
-  VecI high[3];       ///< One past the last cell.
-  MaskF exits_by[3];  ///< The axis whose plane is crossed there; exactly one.
+  VecF plane[3];      ///< Where each axis leaves it [walk space].
+  MaskF forward[3];   ///< Whether the ray climbs that axis.
+  MaskF exits_by[3];  ///< The axis whose plane is crossed first; exactly one.
 };
 
 class SuperVoxelSegments {
@@ -60,7 +59,7 @@ class SuperVoxelSegments {
       cursor.origin[axis] = hn::Load(kFloat, state.origin[axis]);
       cursor.direction[axis] = hn::Load(kFloat, state.direction[axis]);
       cursor.inverse[axis] = hn::Load(kFloat, state.inverse[axis]);
-      cursor.cell[axis] = hn::Load(kInt, state.cell[axis]);
+      cursor.cell[axis] = hn::Load(kFloat, state.cell[axis]);
     }
     cursor.t = hn::Load(kFloat, state.t);
     cursor.end = hn::Load(kFloat, state.end);
@@ -70,7 +69,7 @@ class SuperVoxelSegments {
 
   /// Writes back what a walk changes.
   HWY_INLINE void store(const Cursor& cursor, State& state) const {
-    for (int axis = 0; axis < 3; ++axis) hn::Store(cursor.cell[axis], kInt, state.cell[axis]);
+    for (int axis = 0; axis < 3; ++axis) hn::Store(cursor.cell[axis], kFloat, state.cell[axis]);
     hn::Store(cursor.t, kFloat, state.t);
     hn::Store(cursor.record, kInt, state.record);
   }
@@ -94,19 +93,15 @@ class SuperVoxelSegments {
   HWY_INLINE Segment segment(const Cursor& cursor, MaskF lanes) const {
     Segment s;
     s.record = hn::IfThenElseZero(int_mask(lanes), cursor.record);
-    const VecI one = hn::Set(kInt, 1);
-    const VecI radius = hn::Max(
-        hn::ConvertTo(kInt,
-                      hn::GatherIndex(kFloat, medium_.cells + medium_.component_count, s.record)),
-        one);
+    s.head = hn::GatherIndex(kFloat, medium_.cells, s.record);
+    const VecF radius = hn::Max(hn::Neg(s.head), set(1.0F));
+    const VecF radius_back = hn::Sub(set(1.0F), radius);
     VecF exits[3];
     for (int axis = 0; axis < 3; ++axis) {
-      s.low[axis] = hn::Sub(hn::Add(cursor.cell[axis], one), radius);
-      s.high[axis] = hn::Add(cursor.cell[axis], radius);
-      const MaskF forward = hn::Ge(cursor.direction[axis], hn::Zero(kFloat));
-      const VecF plane =
-          hn::ConvertTo(kFloat, hn::IfThenElse(int_mask(forward), s.high[axis], s.low[axis]));
-      exits[axis] = hn::Mul(hn::Sub(plane, cursor.origin[axis]), cursor.inverse[axis]);
+      s.forward[axis] = hn::Ge(cursor.direction[axis], hn::Zero(kFloat));
+      s.plane[axis] =
+          hn::Add(cursor.cell[axis], hn::IfThenElse(s.forward[axis], radius, radius_back));
+      exits[axis] = hn::Mul(hn::Sub(s.plane[axis], cursor.origin[axis]), cursor.inverse[axis]);
     }
     const VecF nearest = hn::Min(hn::Min(exits[0], exits[1]), exits[2]);
     s.exits_by[0] = hn::Le(exits[0], nearest);
@@ -120,32 +115,30 @@ class SuperVoxelSegments {
   /// ever advance in the ray's direction, whatever rounding does, so every walk ends.
   /// @return the lanes that are still inside the super-voxels
   HWY_INLINE MaskF leave(Cursor& cursor, const Segment& s, MaskF lanes) const {
-    VecI outside = hn::Zero(kInt);
-    const VecI one = hn::Set(kInt, 1);
+    MaskF inside = lanes;
     for (int axis = 0; axis < 3; ++axis) {
-      const MaskI forward = int_mask(hn::Ge(cursor.direction[axis], hn::Zero(kFloat)));
-      const VecF position = hn::MulAdd(cursor.t, cursor.direction[axis], cursor.origin[axis]);
-      const VecI found = floor_to_int(position);
+      const VecF plane = s.plane[axis];
+      const VecF before = hn::Sub(plane, set(1.0F));
       // The crossed plane decides its own axis; along the others the point stays in the segment.
-      const VecI first = hn::IfThenElse(forward, cursor.cell[axis], s.low[axis]);
-      const VecI last = hn::IfThenElse(forward, hn::Sub(s.high[axis], one), cursor.cell[axis]);
-      const VecI inside = hn::Min(hn::Max(found, first), last);
-      const VecI crossed = hn::IfThenElse(forward, s.high[axis], hn::Sub(s.low[axis], one));
-      const VecI next = hn::IfThenElse(int_mask(s.exits_by[axis]), crossed, inside);
+      const VecF last = hn::IfThenElse(s.forward[axis], before, plane);
+      const VecF crossed = hn::IfThenElse(s.forward[axis], plane, before);
+      const VecF found =
+          hn::Floor(hn::MulAdd(cursor.t, cursor.direction[axis], cursor.origin[axis]));
+      const VecF stays = hn::Min(hn::Max(found, hn::Min(cursor.cell[axis], last)),
+                                 hn::Max(cursor.cell[axis], last));
+      const VecF next = hn::IfThenElse(s.exits_by[axis], crossed, stays);
       assign(cursor.cell[axis], lanes, next);
-      const VecI last_cell = hn::Set(kInt, medium_.cell_counts[axis] - 1);
-      outside = hn::Or(outside, hn::Or(cursor.cell[axis], hn::Sub(last_cell, cursor.cell[axis])));
+      inside = hn::AndNot(hn::Lt(next, hn::Zero(kFloat)), inside);
+      inside = hn::And(
+          inside, hn::Lt(next, set(static_cast<float>(medium_.cell_counts[axis]))));
     }
-    const MaskF inside = hn::AndNot(float_mask(hn::Lt(outside, hn::Zero(kInt))), lanes);
     assign(cursor.record, lanes, hn::IfThenElseZero(int_mask(inside), record_of(cursor)));
     return inside;
   }
 
   /// Asks for the records of the cells that a group has come to.
   HWY_INLINE void prefetch(const State& state) const {
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-      hwy::Prefetch(medium_.cells + state.record[lane]);
-    }
+    prefetch_lanes(medium_.cells, state.record);
   }
 
   HWY_INLINE void position(const Cursor& cursor, VecF (&point)[3]) const {
@@ -157,13 +150,14 @@ class SuperVoxelSegments {
  private:
   /// Also computed where a ray enters (transport/entry-inl.h).
   HWY_INLINE VecI record_of(const Cursor& cursor) const {
-    const VecI row =
-        hn::Add(hn::Mul(cursor.cell[0], hn::Set(kInt, medium_.cell_counts[1])), cursor.cell[1]);
-    const VecI cell = hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])), cursor.cell[2]);
-    return hn::Mul(cell, hn::Set(kInt, medium_.component_count + 1));
+    const VecI row = hn::Add(
+        hn::Mul(small_to_int(cursor.cell[0]), hn::Set(kInt, medium_.cell_counts[1])),
+        small_to_int(cursor.cell[1]));
+    const VecI cell = hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])),
+                              small_to_int(cursor.cell[2]));
+    return medium_.component_count == 1 ? cell
+                                        : hn::Mul(cell, hn::Set(kInt, medium_.component_count));
   }
-
-  static HWY_INLINE VecI floor_to_int(VecF value) { return hn::ConvertTo(kInt, hn::Floor(value)); }
 
   MediumView medium_;
 };

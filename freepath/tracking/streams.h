@@ -70,7 +70,7 @@ struct FlightStream {
 /// Working memory of walks, one for each thread.
 struct WalkScratch {
   std::array<std::vector<float>, 3> origin, direction, inverse;  ///< [walk space]
-  std::array<std::vector<int32_t>, 3> cell;
+  std::array<std::vector<float>, 3> cell;  ///< Whole numbers.
   std::vector<int32_t> record;       ///< Where the bounds of that cell stand.
   std::vector<float> begin, length;  ///< Entry of the medium, and how far from there to its end.
 };

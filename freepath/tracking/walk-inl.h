@@ -57,28 +57,16 @@ class Walk {
         largest_weight_(hn::Zero(kFloat)) {}
 
   void run() {
-    HWY_ALIGN_MAX Group groups[kGroups] = {};
+    HWY_ALIGN_MAX Team teams[2] = {};
     statistics_.rays += rays_.size();
-    for (Group& group : groups) refill(group, (1U << kLanes) - 1);
+    for (Team& team : teams) {
+      for (Group& group : team) refill(group, (1U << kLanes) - 1);
+    }
+    // While one team computes, the memory that the other has asked for arrives.
     bool alive = true;
     while (alive) {
-      alive = false;
-      for (Group& group : groups) {
-        if (group.alive == 0) continue;
-        alive = true;
-        draw(group);
-      }
-      step_through_segments(groups);
-      for (Group& group : groups) {
-        if (group.alive != 0) aim(group);
-      }
-      for (Group& group : groups) {
-        if (group.colliding != 0) medium_.fetch(group.lookup);
-      }
-      for (Group& group : groups) {
-        if (group.colliding != 0) collide(group);
-        retire(group);
-      }
+      alive = advance(teams[0], teams[1]);
+      alive |= advance(teams[1], teams[0]);
     }
     statistics_.largest_weight =
         std::max(statistics_.largest_weight, hn::GetLane(hn::MaxOfLanes(kFloat, largest_weight_)));
@@ -110,6 +98,30 @@ class Walk {
     uint32_t absorbed;
   };
 
+  using Team = Group[kGroups / 2];
+
+  /// A round of one team: ends its collisions, then finds its next ones and aims at them; asks for
+  /// the voxels of the other team meanwhile.
+  /// @return whether a ray of the team is left
+  HWY_INLINE bool advance(Team& team, Team& other) {
+    bool alive = false;
+    for (int i = 0; i < kGroups / 2; ++i) {
+      if (other[i].colliding != 0) medium_.fetch(other[i].lookup);
+      Group& group = team[i];
+      if (group.colliding != 0) collide(group);
+      retire(group);
+      if (group.alive == 0) continue;
+      alive = true;
+      draw(group);
+    }
+    if (!alive) return false;
+    step_through_segments(team);
+    for (Group& group : team) {
+      if (group.alive != 0) aim(group);
+    }
+    return true;
+  }
+
   /// One block of random words for each lane that begins a new flight between collisions, and its
   /// optical depth.
   HWY_INLINE void draw(Group& group) {
@@ -132,7 +144,7 @@ class Walk {
   }
 
   /// Every group takes a step before any takes its next: their gathers miss the caches together.
-  HWY_INLINE void step_through_segments(Group (&groups)[kGroups]) {
+  HWY_INLINE void step_through_segments(Team& groups) {
     bool first = true;
     for (bool stepping = true; stepping; first = false) {
       stepping = false;
@@ -155,7 +167,7 @@ class Walk {
     VecF exit = hn::Load(kFloat, group.exit);
     statistics_.super_voxel_steps += static_cast<uint64_t>(std::popcount(group.searching));
     const auto segment = segments_.segment(cursor, searching);
-    const VecF rate_here = tracker_.rate(medium_.bounds(segment.record));
+    const VecF rate_here = tracker_.rate(medium_.bounds(segment));
     const VecF depth = hn::Mul(rate_here, hn::Sub(segment.exit, cursor.t));
     const MaskF hits = hn::And(searching, hn::Lt(tau, depth));
     const MaskF leaves = hn::AndNot(hits, searching);

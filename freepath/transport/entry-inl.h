@@ -79,11 +79,11 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
     hn::StoreU(entry, kFloat, scratch.origin[axis].data() + first);
     hn::StoreU(direction[axis], kFloat, scratch.direction[axis].data() + first);
     hn::StoreU(inverse[axis], kFloat, scratch.inverse[axis].data() + first);
-    const VecI number = hn::ConvertTo(kInt, safe_cell);
-    hn::StoreU(number, kInt, scratch.cell[axis].data() + first);
-    record = hn::Add(hn::Mul(record, hn::Set(kInt, medium.cell_counts[axis])), number);
+    hn::StoreU(safe_cell, kFloat, scratch.cell[axis].data() + first);
+    record = hn::Add(hn::Mul(record, hn::Set(kInt, medium.cell_counts[axis])),
+                     small_to_int(safe_cell));
   }
-  record = hn::Mul(record, hn::Set(kInt, medium.component_count + 1));
+  record = hn::Mul(record, hn::Set(kInt, medium.component_count));
   hn::StoreU(record, kInt, scratch.record.data() + first);
 }
 
