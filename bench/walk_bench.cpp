@@ -64,9 +64,9 @@ class StreamVariant : public Variant {
   double walk(const RayStream& rays) override {
     WalkStatistics statistics;
     if (estimate_ == Estimate::kFreePath) {
-      walker_.free_paths(rays, flights_, scratch_, statistics);
+      walker_.free_paths(rays, flights_, statistics);
     } else {
-      walker_.transmittance(rays, flights_, scratch_, statistics);
+      walker_.transmittance(rays, flights_, statistics);
     }
     return static_cast<double>(statistics.tentative_collisions);
   }
@@ -94,7 +94,6 @@ class StreamVariant : public Variant {
   Walker walker_;
   Estimate estimate_;
   FlightStream flights_;
-  WalkScratch scratch_;
 };
 
 struct Row {

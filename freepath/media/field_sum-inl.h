@@ -57,9 +57,8 @@ class FieldSum {
     Bounds bounds;
     for (int channel = 0; channel < N; ++channel) bounds.majorant[channel] = hn::Zero(kFloat);
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF density =
-          k == 0 ? hn::Max(segment.head, hn::Zero(kFloat))
-                 : hn::GatherIndex(kFloat, medium_.cells + k, segment.record);
+      const VecF density = k == 0 ? hn::Max(segment.head, hn::Zero(kFloat))
+                                  : hn::GatherIndex(kFloat, medium_.cells + k, segment.record);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
         const float sigma_t = component.sigma_a[channel] + component.sigma_s[channel];

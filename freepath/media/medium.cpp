@@ -48,6 +48,9 @@ bool is_grey_but_for_rounding(const Spectrum& s) {
   return high - low <= kTolerance * high;
 }
 
+/// Lanes count voxels in floats (small_to_int in base/lanes-inl.h), and interpolate between them.
+constexpr int kMaxBricksAlongAxis = (1 << 23) / BrickMap::kBrickSize;
+
 /// Edge of a cube with a voxel's volume [world], for the cost model alone.
 double voxel_edge(const Matrix4d& index_to_world) {
   return std::cbrt(std::abs(index_to_world.determinant()));
@@ -79,6 +82,11 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
     densities.push_back(&components_[k].density->voxels);
     extinction.push_back(
         static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
+  }
+  const Vec3i& bricks = densities[0]->brick_counts();
+  if (std::max({bricks.x, bricks.y, bricks.z}) > kMaxBricksAlongAxis) {
+    fail("grid '{}' is more than {} voxels long: positions along it exceed the precision of floats",
+         components_[0].density->name, kMaxBricksAlongAxis * BrickMap::kBrickSize);
   }
   super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
   walk_cells_ = mark_empty_cells(super_voxels_);

@@ -74,19 +74,19 @@ class SuperVoxelSegments {
     hn::Store(cursor.record, kInt, state.record);
   }
 
-  /// Puts the rays from slot `first` on into the dealer's lanes.
-  template <class Entry>
-  HWY_INLINE void refill(const Entry& entry, std::size_t first, const Dealer& dealer,
+  /// Puts rows of entered rays, from `first` on, into the dealer's lanes.
+  template <class Rows>
+  HWY_INLINE void refill(const Rows& rays, std::size_t first, const Dealer& dealer,
                          State& state) const {
     for (int axis = 0; axis < 3; ++axis) {
-      dealer.deal(entry.origin[axis].data() + first, state.origin[axis]);
-      dealer.deal(entry.direction[axis].data() + first, state.direction[axis]);
-      dealer.deal(entry.inverse[axis].data() + first, state.inverse[axis]);
-      dealer.deal(entry.cell[axis].data() + first, state.cell[axis]);
+      dealer.deal(rays.origin[axis] + first, state.origin[axis]);
+      dealer.deal(rays.direction[axis] + first, state.direction[axis]);
+      dealer.deal(rays.inverse[axis] + first, state.inverse[axis]);
+      dealer.deal(rays.cell[axis] + first, state.cell[axis]);
     }
-    dealer.deal(entry.length.data() + first, state.end);
+    dealer.deal(rays.length + first, state.end);
     dealer.fill(0.0F, state.t);
-    dealer.deal(entry.record.data() + first, state.record);
+    dealer.deal(rays.record + first, state.record);
   }
 
   /// The segment at the cursor. Lanes outside the mask get entry 0 and no meaning.
@@ -129,8 +129,7 @@ class SuperVoxelSegments {
       const VecF next = hn::IfThenElse(s.exits_by[axis], crossed, stays);
       assign(cursor.cell[axis], lanes, next);
       inside = hn::AndNot(hn::Lt(next, hn::Zero(kFloat)), inside);
-      inside = hn::And(
-          inside, hn::Lt(next, set(static_cast<float>(medium_.cell_counts[axis]))));
+      inside = hn::And(inside, hn::Lt(next, set(static_cast<float>(medium_.cell_counts[axis]))));
     }
     assign(cursor.record, lanes, hn::IfThenElseZero(int_mask(inside), record_of(cursor)));
     return inside;
@@ -150,11 +149,11 @@ class SuperVoxelSegments {
  private:
   /// Also computed where a ray enters (transport/entry-inl.h).
   HWY_INLINE VecI record_of(const Cursor& cursor) const {
-    const VecI row = hn::Add(
-        hn::Mul(small_to_int(cursor.cell[0]), hn::Set(kInt, medium_.cell_counts[1])),
-        small_to_int(cursor.cell[1]));
-    const VecI cell = hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])),
-                              small_to_int(cursor.cell[2]));
+    const VecI row =
+        hn::Add(hn::Mul(small_to_int(cursor.cell[0]), hn::Set(kInt, medium_.cell_counts[1])),
+                small_to_int(cursor.cell[1]));
+    const VecI cell =
+        hn::Add(hn::Mul(row, hn::Set(kInt, medium_.cell_counts[2])), small_to_int(cursor.cell[2]));
     return medium_.component_count == 1 ? cell
                                         : hn::Mul(cell, hn::Set(kInt, medium_.component_count));
   }

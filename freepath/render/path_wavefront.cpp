@@ -86,7 +86,7 @@ void PathWavefront::trace_channel(const PathJob& job, int channel) {
     while (active < setup_.slots && next < total) start_path(job, next++, active++, channel);
     if (active == 0) break;
     rays_.resize(active);
-    walker_->free_paths(rays_, flights_, scratch_, statistics_);
+    walker_->free_paths(rays_, flights_, statistics_);
 
     // Paths that go on close ranks; those that have ended owe nothing to the shadow rays.
     shadows_.clear();
@@ -272,7 +272,7 @@ void PathWavefront::finish(const Path& path, int channel) {
 void PathWavefront::trace_shadows() {
   if (shadows_.empty()) return;
   shadow_rays_.resize(shadows_.size());
-  walker_->transmittance(shadow_rays_, shadow_flights_, scratch_, statistics_);
+  walker_->transmittance(shadow_rays_, shadow_flights_, statistics_);
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     Path& path = paths_in_flight_[shadows_[i].slot];
     path.radiance += shadows_[i].radiance * shadow_flights_.weight[0][i];

@@ -98,7 +98,6 @@ class PathWavefront {
   RayStream shadow_rays_;
   FlightStream shadow_flights_;
   std::vector<ShadowPath> shadows_;
-  WalkScratch scratch_;
   std::vector<PathSample> results_;
   const Walker* walker_ = nullptr;  // of the channel at work
   WalkStatistics statistics_;

@@ -81,7 +81,7 @@ class SlabWavefront {
       while (active < paths_in_flight_.size() && next < count) start_path(next++, active++);
       if (active == 0) break;
       rays_.resize(active);
-      walker_.free_paths(rays_, flights_, scratch_, statistics_);
+      walker_.free_paths(rays_, flights_, statistics_);
       // Paths that go on close ranks, in the slots of those that have ended.
       std::size_t kept = 0;
       for (std::size_t slot = 0; slot < active; ++slot) {
@@ -188,7 +188,6 @@ class SlabWavefront {
   std::vector<Outcome> outcomes_;
   RayStream rays_;
   FlightStream flights_;
-  WalkScratch scratch_;
   WalkStatistics statistics_;
 };
 

@@ -67,12 +67,4 @@ struct FlightStream {
   std::size_t count_ = 0;
 };
 
-/// Working memory of walks, one for each thread.
-struct WalkScratch {
-  std::array<std::vector<float>, 3> origin, direction, inverse;  ///< [walk space]
-  std::array<std::vector<float>, 3> cell;  ///< Whole numbers.
-  std::vector<int32_t> record;       ///< Where the bounds of that cell stand.
-  std::vector<float> begin, length;  ///< Entry of the medium, and how far from there to its end.
-};
-
 }  // namespace freepath

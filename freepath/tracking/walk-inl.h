@@ -39,11 +39,11 @@ inline constexpr int kGroups = 8;
 /// still looks for its tentative collision; the others go on, and those resume in the next round.
 inline constexpr int kSearchingShare = 4;
 
-template <int N, class Tracker, class Segments, class Medium>
+template <int N, class Tracker, class Segments, class Medium, class Entry>
 class Walk {
  public:
   Walk(const Tracker& tracker, const Segments& segments, const Medium& medium,
-       const WalkModes& modes, uint64_t seed, const RayStream& rays, const WalkScratch& entry,
+       const WalkModes& modes, uint64_t seed, const RayStream& rays, Entry& entry,
        FlightStream& flights, WalkStatistics& statistics)
       : tracker_(tracker),
         segments_(segments),
@@ -60,7 +60,7 @@ class Walk {
     HWY_ALIGN_MAX Team teams[2] = {};
     statistics_.rays += rays_.size();
     for (Team& team : teams) {
-      for (Group& group : team) refill(group, (1U << kLanes) - 1);
+      for (Group& group : team) refill(group);
     }
     // While one team computes, the memory that the other has asked for arrives.
     bool alive = true;
@@ -89,6 +89,7 @@ class Walk {
     HWY_ALIGN_MAX uint32_t block[kLanes];  ///< Philox blocks drawn, one per tentative collision.
     HWY_ALIGN_MAX int32_t component[kLanes];
     HWY_ALIGN_MAX uint32_t ray[kLanes];  ///< Slot in the streams.
+    HWY_ALIGN_MAX float begin[kLanes];   ///< Where the ray entered the medium [world].
     uint32_t alive;                      ///< Lanes that hold a ray.
     uint32_t drawing;                    ///< Lanes that need a new optical depth.
     uint32_t searching;                  ///< Lanes on their way to a tentative collision.
@@ -103,7 +104,7 @@ class Walk {
   /// A round of one team: ends its collisions, then finds its next ones and aims at them; asks for
   /// the voxels of the other team meanwhile.
   /// @return whether a ray of the team is left
-  HWY_INLINE bool advance(Team& team, Team& other) {
+  HWY_NOINLINE bool advance(Team& team, Team& other) {
     bool alive = false;
     for (int i = 0; i < kGroups / 2; ++i) {
       if (other[i].colliding != 0) medium_.fetch(other[i].lookup);
@@ -269,7 +270,7 @@ class Walk {
       const int lane = std::countr_zero(rest);
       const uint32_t bit = 1U << lane;
       const uint32_t ray = group.ray[lane];
-      flights_.t[ray] = group.segments.t[lane] + entry_.begin[ray];
+      flights_.t[ray] = group.segments.t[lane] + group.begin[lane];
       flights_.event[ray] = (group.scattered & bit) != 0  ? Event::kScatter
                             : (group.absorbed & bit) != 0 ? Event::kAbsorb
                                                           : Event::kEscape;
@@ -286,16 +287,23 @@ class Walk {
     group.escaped = group.scattered = group.absorbed = group.colliding = 0;
     group.alive &= ~done;
     group.drawing &= ~done;
-    refill(group, done);
+    refill(group);
   }
 
-  /// Gives each of the lanes the next ray of the stream.
-  HWY_INLINE void refill(Group& group, uint32_t lanes) {
-    const std::size_t left = rays_.size() - next_ray_;
+  /// Gives each empty lane the next ray of the stream, as far as the chunk reaches.
+  HWY_INLINE void refill(Group& group) {
+    if (next_ray_ == chunk_end_) {
+      if (next_ray_ == rays_.size()) return;
+      chunk_begin_ = next_ray_;
+      chunk_ = &entry_.enter(next_ray_);
+      chunk_end_ = std::min(next_ray_ + Entry::kChunk, rays_.size());
+    }
+    uint32_t lanes = ~group.alive & ((1U << kLanes) - 1);
+    const std::size_t left = chunk_end_ - next_ray_;
     while (static_cast<std::size_t>(std::popcount(lanes)) > left) lanes &= lanes - 1;
-    if (lanes == 0) return;
     const Dealer dealer(lanes);
-    segments_.refill(entry_, next_ray_, dealer, group.segments);
+    segments_.refill(*chunk_, next_ray_ - chunk_begin_, dealer, group.segments);
+    dealer.deal(chunk_->begin + (next_ray_ - chunk_begin_), group.begin);
     for (int channel = 0; channel < N; ++channel) {
       dealer.fill(1.0F, group.weight[channel]);
       dealer.fill(0.0F, group.emitted[channel]);
@@ -316,10 +324,13 @@ class Walk {
   const WalkModes& modes_;
   uint64_t seed_;
   const RayStream& rays_;
-  const WalkScratch& entry_;
+  Entry& entry_;
   FlightStream& flights_;
   WalkStatistics& statistics_;
   VecF largest_weight_;
+  const typename Entry::Rows* chunk_ = nullptr;  ///< Rays that have entered, from chunk_begin_ on.
+  std::size_t chunk_begin_ = 0;
+  std::size_t chunk_end_ = 0;
   std::size_t next_ray_ = 0;
 };
 

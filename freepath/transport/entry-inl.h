@@ -22,23 +22,58 @@ HWY_INLINE VecF entry_inverse(VecF direction) {
   return hn::Div(set(1.0F), hn::IfThenElse(small, set(1.0F / kHuge), direction));
 }
 
+/// The entry of a stream of rays into a medium, a chunk at a time, so that what a walk reads of
+/// rays to come stays in the nearest cache.
+class MediumEntry {
+ public:
+  /// Rays in a chunk.
+  static constexpr std::size_t kChunk = 256;
+
+  /// Rays of a chunk. Rows are padded, so that lanes may read past the last ray.
+  struct Rows {
+    static constexpr std::size_t kSize = kChunk + kStreamPadding;
+    HWY_ALIGN_MAX float origin[3][kSize];     ///< [walk space]
+    HWY_ALIGN_MAX float direction[3][kSize];  ///< [walk space per world unit]
+    HWY_ALIGN_MAX float inverse[3][kSize];
+    HWY_ALIGN_MAX float cell[3][kSize];   ///< Whole numbers.
+    HWY_ALIGN_MAX int32_t record[kSize];  ///< Where the bounds of that cell stand.
+    HWY_ALIGN_MAX float begin[kSize];     ///< Where the ray enters the medium [world].
+    HWY_ALIGN_MAX float length[kSize];    ///< How far from there to its end [world].
+  };
+
+  MediumEntry(const MediumView& medium, const RayStream& rays) : medium_(medium), rays_(rays) {}
+
+  /// Enters the chunk of rays that begins with slot `first`.
+  HWY_NOINLINE const Rows& enter(std::size_t first) {
+    const std::size_t count = std::min(kChunk, rays_.size() - first);
+    for (std::size_t i = 0; i < count; i += kLanes) enter_lanes(first + i, i);
+    return rows_;
+  }
+
+ private:
+  HWY_INLINE void enter_lanes(std::size_t first, std::size_t row);
+
+  const MediumView& medium_;
+  const RayStream& rays_;
+  Rows rows_;
+};
+
 /// Enters kLanes rays from slot `first` on. The origin moves to where a ray meets the bounds, so
 /// that a distant camera costs no precision inside. A ray that misses, that has no direction, or
 /// whose numbers are not finite gets length 0.
-HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std::size_t first,
-                           WalkScratch& scratch) {
+HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
   VecF world_origin[3];
   VecF world_direction[3];
   for (int axis = 0; axis < 3; ++axis) {
-    world_origin[axis] = hn::LoadU(kFloat, rays.origin[axis].data() + first);
-    world_direction[axis] = hn::LoadU(kFloat, rays.direction[axis].data() + first);
+    world_origin[axis] = hn::LoadU(kFloat, rays_.origin[axis].data() + first);
+    world_direction[axis] = hn::LoadU(kFloat, rays_.direction[axis].data() + first);
   }
-  const AffineMap& map = medium.world_to_walk;
+  const AffineMap& map = medium_.world_to_walk;
   VecF origin[3];
   VecF direction[3];
   VecF inverse[3];
   VecF begin = hn::Zero(kFloat);
-  VecF end = hn::Min(hn::LoadU(kFloat, rays.t_max.data() + first), set(kHuge));
+  VecF end = hn::Min(hn::LoadU(kFloat, rays_.t_max.data() + first), set(kHuge));
   for (int axis = 0; axis < 3; ++axis) {
     origin[axis] = set(map.offset[axis]);
     direction[axis] = hn::Zero(kFloat);
@@ -48,9 +83,10 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
       direction[axis] = hn::MulAdd(world_direction[from], factor, direction[axis]);
     }
     inverse[axis] = entry_inverse(direction[axis]);
-    const VecF to_low = hn::Mul(hn::Sub(set(medium.bounds_min[axis]), origin[axis]), inverse[axis]);
+    const VecF to_low =
+        hn::Mul(hn::Sub(set(medium_.bounds_min[axis]), origin[axis]), inverse[axis]);
     const VecF to_high =
-        hn::Mul(hn::Sub(set(medium.bounds_max[axis]), origin[axis]), inverse[axis]);
+        hn::Mul(hn::Sub(set(medium_.bounds_max[axis]), origin[axis]), inverse[axis]);
     begin = hn::Max(begin, hn::Min(to_low, to_high));
     end = hn::Min(end, hn::Max(to_low, to_high));
   }
@@ -67,40 +103,24 @@ HWY_INLINE void enter_rays(const MediumView& medium, const RayStream& rays, std:
   const MaskF meets = hn::And(hn::And(finite, moves), hn::Lt(begin, end));
   const VecF length = hn::IfThenElseZero(meets, hn::Sub(end, begin));
   // A ray that misses has flown to its end.
-  const VecF start = hn::IfThenElse(meets, begin, hn::LoadU(kFloat, rays.t_max.data() + first));
-  hn::StoreU(start, kFloat, scratch.begin.data() + first);
-  hn::StoreU(length, kFloat, scratch.length.data() + first);
+  const VecF start = hn::IfThenElse(meets, begin, hn::LoadU(kFloat, rays_.t_max.data() + first));
+  hn::Store(start, kFloat, rows_.begin + row);
+  hn::Store(length, kFloat, rows_.length + row);
   VecI record = hn::Zero(kInt);
   for (int axis = 0; axis < 3; ++axis) {
     const VecF entry = hn::MulAdd(begin, direction[axis], origin[axis]);
-    const VecF last = set(static_cast<float>(medium.cell_counts[axis] - 1));
+    const VecF last = set(static_cast<float>(medium_.cell_counts[axis] - 1));
     const VecF cell = hn::Min(hn::Max(hn::Floor(entry), hn::Zero(kFloat)), last);
     const VecF safe_cell = hn::IfThenElseZero(meets, cell);
-    hn::StoreU(entry, kFloat, scratch.origin[axis].data() + first);
-    hn::StoreU(direction[axis], kFloat, scratch.direction[axis].data() + first);
-    hn::StoreU(inverse[axis], kFloat, scratch.inverse[axis].data() + first);
-    hn::StoreU(safe_cell, kFloat, scratch.cell[axis].data() + first);
-    record = hn::Add(hn::Mul(record, hn::Set(kInt, medium.cell_counts[axis])),
-                     small_to_int(safe_cell));
+    hn::Store(entry, kFloat, rows_.origin[axis] + row);
+    hn::Store(direction[axis], kFloat, rows_.direction[axis] + row);
+    hn::Store(inverse[axis], kFloat, rows_.inverse[axis] + row);
+    hn::Store(safe_cell, kFloat, rows_.cell[axis] + row);
+    record =
+        hn::Add(hn::Mul(record, hn::Set(kInt, medium_.cell_counts[axis])), small_to_int(safe_cell));
   }
-  record = hn::Mul(record, hn::Set(kInt, medium.component_count));
-  hn::StoreU(record, kInt, scratch.record.data() + first);
-}
-
-inline void enter_stream(const MediumView& medium, const RayStream& rays, WalkScratch& scratch) {
-  const std::size_t padded = rays.size() + kStreamPadding;
-  if (scratch.begin.size() < padded) {
-    for (auto* group : {&scratch.origin, &scratch.direction, &scratch.inverse}) {
-      for (auto& values : *group) values.resize(padded);
-    }
-    for (auto& values : scratch.cell) values.resize(padded);
-    scratch.begin.resize(padded);
-    scratch.length.resize(padded);
-    scratch.record.resize(padded);
-  }
-  for (std::size_t first = 0; first < rays.size(); first += kLanes) {
-    enter_rays(medium, rays, first, scratch);
-  }
+  record = hn::Mul(record, hn::Set(kInt, medium_.component_count));
+  hn::Store(record, kInt, rows_.record + row);
 }
 
 }  // namespace freepath::HWY_NAMESPACE

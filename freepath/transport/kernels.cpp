@@ -25,14 +25,14 @@ namespace freepath::HWY_NAMESPACE {
 
 template <int N, class Method>
 void walk_stream(const MediumView& medium, std::span<const float> options, const WalkModes& modes,
-                 uint64_t seed, const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+                 uint64_t seed, const RayStream& rays, FlightStream& flights,
                  WalkStatistics& statistics) {
-  enter_stream(medium, rays, scratch);
+  MediumEntry entry(medium, rays);
   const Method method(options);
   const SuperVoxelSegments segments(medium);
   const FieldSum<N> fields(medium);
-  Walk<N, Method, SuperVoxelSegments, FieldSum<N>>(method, segments, fields, modes, seed, rays,
-                                                   scratch, flights, statistics)
+  Walk<N, Method, SuperVoxelSegments, FieldSum<N>, MediumEntry>(
+      method, segments, fields, modes, seed, rays, entry, flights, statistics)
       .run();
 }
 

@@ -24,8 +24,7 @@ std::string_view to_string(Simd simd);
 /// Walks a stream of rays through a medium by one method.
 using WalkFunction = void (*)(const MediumView& medium, std::span<const float> options,
                               const WalkModes& modes, uint64_t seed, const RayStream& rays,
-                              FlightStream& flights, WalkScratch& scratch,
-                              WalkStatistics& statistics);
+                              FlightStream& flights, WalkStatistics& statistics);
 
 /// One method as compiled for one target.
 struct Kernel {

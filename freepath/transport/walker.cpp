@@ -53,19 +53,19 @@ Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
 }
 
 void Walker::walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,
-                  FlightStream& flights, WalkScratch& scratch, WalkStatistics& statistics) const {
+                  FlightStream& flights, WalkStatistics& statistics) const {
   flights.resize(rays.size());
-  bound.function(view_, bound.method.options, modes, seed_, rays, flights, scratch, statistics);
+  bound.function(view_, bound.method.options, modes, seed_, rays, flights, statistics);
 }
 
-void Walker::free_paths(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+void Walker::free_paths(const RayStream& rays, FlightStream& flights,
                         WalkStatistics& statistics) const {
-  walk(tracker_, modes_, rays, flights, scratch, statistics);
+  walk(tracker_, modes_, rays, flights, statistics);
 }
 
-void Walker::transmittance(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+void Walker::transmittance(const RayStream& rays, FlightStream& flights,
                            WalkStatistics& statistics) const {
-  walk(transmittance_, WalkModes{}, rays, flights, scratch, statistics);
+  walk(transmittance_, WalkModes{}, rays, flights, statistics);
 }
 
 }  // namespace freepath

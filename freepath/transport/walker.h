@@ -24,7 +24,7 @@ std::span<const MethodInfo> tracker_infos();
 std::span<const MethodInfo> transmittance_infos();
 
 /// Samples free paths and estimates transmittances in one medium. Const and without state of its
-/// own: any number of threads may share it, each with its own streams and scratch.
+/// own: any number of threads may share it, each with its own streams.
 class Walker {
  public:
   /// Carries all channels in one walk.
@@ -41,11 +41,10 @@ class Walker {
 
   /// Flies every ray to its next scattering, absorption or escape [Kutz17]. Flights are written to
   /// the slots of their rays; a ray's flight depends on the ray and the seed alone.
-  void free_paths(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
-                  WalkStatistics& statistics) const;
+  void free_paths(const RayStream& rays, FlightStream& flights, WalkStatistics& statistics) const;
 
   /// Estimates the transmittance from each ray's origin to its t_max: the weight of its flight.
-  void transmittance(const RayStream& rays, FlightStream& flights, WalkScratch& scratch,
+  void transmittance(const RayStream& rays, FlightStream& flights,
                      WalkStatistics& statistics) const;
 
   /// Channels in the weights of a flight: 1 or kChannels.
@@ -57,7 +56,7 @@ class Walker {
     Method method;
   };
   void walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,
-            FlightStream& flights, WalkScratch& scratch, WalkStatistics& statistics) const;
+            FlightStream& flights, WalkStatistics& statistics) const;
 
   MediumView view_;
   Bound tracker_;

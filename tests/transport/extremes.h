@@ -106,14 +106,13 @@ inline void with_every_method(
         settings.transmittance = estimator;
         const Walker walker(medium, settings);
         FlightStream flights;
-        WalkScratch scratch;
         WalkStatistics statistics;
-        walker.free_paths(rays, flights, scratch, statistics);
+        walker.free_paths(rays, flights, statistics);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           ASSERT_TRUE(is_sane(flights, i, true));
           check(flights, i, false);
         }
-        walker.transmittance(rays, flights, scratch, statistics);
+        walker.transmittance(rays, flights, statistics);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           ASSERT_TRUE(is_sane(flights, i, false));
           check(flights, i, true);
@@ -151,9 +150,8 @@ inline void with_every_target(const Medium& medium, const RayStream& rays,
     settings.simd = simd;
     settings.interpolation = Interpolation::kNearest;
     FlightStream flights;
-    WalkScratch scratch;
     WalkStatistics statistics;
-    Walker(medium, settings).free_paths(rays, flights, scratch, statistics);
+    Walker(medium, settings).free_paths(rays, flights, statistics);
     for (std::size_t i = 0; i < rays.size(); ++i) check(flights, i);
   }
 }

@@ -74,12 +74,11 @@ TEST(Extremes, AFieldOfOneVoxelHasTheTransmittanceOfItsTent) {
         settings.simd = simd;
         settings.interpolation = interpolation;
         FlightStream flights;
-        WalkScratch scratch;
         WalkStatistics statistics;
         Walker(medium, settings)
             .transmittance(repeat_ray(Vec3f(-20, 8 + offset.y, -9 + offset.z), Vec3f(1, 0, 0),
                                       kInfinity, kPaths),
-                           flights, scratch, statistics);
+                           flights, statistics);
         RunningStatistics result;
         for (std::size_t i = 0; i < kPaths; ++i) result.add(flights.weight[0][i]);
         const bool nearest = interpolation == Interpolation::kNearest;
@@ -168,10 +167,8 @@ TEST(Extremes, RaysAlongFacesAndEdgesSeeTheirTransmittance) {
         settings.simd = simd;
         settings.interpolation = interpolation;
         FlightStream flights;
-        WalkScratch scratch;
         WalkStatistics statistics;
-        Walker(medium, settings)
-            .transmittance(repeat_ray(ray, kPaths, 0), flights, scratch, statistics);
+        Walker(medium, settings).transmittance(repeat_ray(ray, kPaths, 0), flights, statistics);
         RunningStatistics result;
         for (std::size_t i = 0; i < kPaths; ++i) result.add(flights.weight[0][i]);
         EXPECT_TRUE(check_mean(name_of(interpolation), result, std::exp(-depth),
@@ -328,14 +325,12 @@ TEST(Extremes, StreamsOfAnySize) {
     settings.simd = simd;
     const Walker walker(medium, settings);
     FlightStream all;
-    WalkScratch scratch;
     WalkStatistics statistics;
-    walker.free_paths(repeat_ray(test_rays()[0], 1000, 0), all, scratch, statistics);
+    walker.free_paths(repeat_ray(test_rays()[0], 1000, 0), all, statistics);
     EXPECT_EQ(statistics.rays, 1000U);
     for (const std::size_t count : {0, 1, 15, 16, 17, 999}) {
       FlightStream some;
-      WalkScratch fresh;
-      walker.free_paths(repeat_ray(test_rays()[0], count, 0), some, fresh, statistics);
+      walker.free_paths(repeat_ray(test_rays()[0], count, 0), some, statistics);
       ASSERT_EQ(some.size(), count);
       for (std::size_t i = 0; i < count; ++i) {
         EXPECT_EQ(some.t[i], all.t[i]);
@@ -344,8 +339,8 @@ TEST(Extremes, StreamsOfAnySize) {
       }
     }
     FlightStream none;
-    walker.free_paths(RayStream{}, none, scratch, statistics);
-    walker.transmittance(RayStream{}, none, scratch, statistics);
+    walker.free_paths(RayStream{}, none, statistics);
+    walker.transmittance(RayStream{}, none, statistics);
     EXPECT_EQ(none.size(), 0U);
   }
 }

@@ -59,12 +59,11 @@ RunningStatistics estimate_radiance(const Medium& medium, const WalkSettings& se
                                     const std::array<double, 2>& planted = {1, 1}) {
   const Walker walker(medium, settings, channel);
   FlightStream flights;
-  WalkScratch scratch;
   RunningStatistics result;
   for (std::size_t done = 0; done < paths; done += kBatch) {
     const RayStream rays =
         repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, kBatch, static_cast<uint32_t>(done));
-    walker.free_paths(rays, flights, scratch, statistics);
+    walker.free_paths(rays, flights, statistics);
     for (std::size_t i = 0; i < kBatch; ++i) result.add(radiance(flights, i, channel, planted));
   }
   return result;
@@ -151,11 +150,10 @@ TEST(FixtureA, EveryEstimatorReproducesTheTransmittance) {
       RunningStatistics result;
       WalkStatistics statistics;
       FlightStream flights;
-      WalkScratch scratch;
       for (std::size_t done = 0; done < 1'000'000; done += kBatch) {
         walker.transmittance(
             repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, kBatch, static_cast<uint32_t>(done)),
-            flights, scratch, statistics);
+            flights, statistics);
         for (std::size_t i = 0; i < kBatch; ++i) result.add(flights.weight[0][i]);
       }
       EXPECT_TRUE(check_mean(method, result, std::exp(-FixtureA::kThickness[channel]),

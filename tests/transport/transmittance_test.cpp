@@ -78,11 +78,10 @@ double unit_depth(int ray, Interpolation interpolation) {
   RunningStatistics result;
   WalkStatistics statistics;
   FlightStream flights;
-  WalkScratch scratch;
   constexpr std::size_t kBatch = 20'000;
   for (std::size_t done = 0; done < paths; done += kBatch) {
     const std::size_t count = std::min(kBatch, paths - done);
-    walker.transmittance(repeat_ray(ray, count, done), flights, scratch, statistics);
+    walker.transmittance(repeat_ray(ray, count, done), flights, statistics);
     for (std::size_t i = 0; i < count; ++i) result.add(flights.weight[0][i]);
   }
   const std::string name = std::string(estimator.name) + ", " + name_of(interpolation) + ", " +

@@ -128,11 +128,10 @@ template <class Function>
 void for_each_flight(const Walker& walker, const TestRay& ray, std::size_t paths, Function f) {
   constexpr std::size_t kBatch = 20'000;
   FlightStream flights;
-  WalkScratch scratch;
   WalkStatistics statistics;
   for (std::size_t done = 0; done < paths; done += kBatch) {
     const std::size_t count = std::min(kBatch, paths - done);
-    walker.free_paths(repeat_ray(ray, count, done), flights, scratch, statistics);
+    walker.free_paths(repeat_ray(ray, count, done), flights, statistics);
     for (std::size_t i = 0; i < count; ++i) f(flights, i);
   }
 }

@@ -46,9 +46,8 @@ TEST(Walker, LanesDrawTheNumbersOfTheScalarGenerator) {
       settings.simd = simd;
       settings.seed = seed;
       FlightStream flights;
-      WalkScratch scratch;
       WalkStatistics statistics;
-      Walker(medium, settings).free_paths(rays, flights, scratch, statistics);
+      Walker(medium, settings).free_paths(rays, flights, statistics);
       for (std::size_t i = 0; i < kRays; ++i) {
         const float expected =
             RandomStream(seed, rays.pixel[i], rays.sample[i], rays.stream[i]).exponential() /
@@ -174,16 +173,15 @@ Flown fly(const Method& method, const RayStream& rays, std::size_t batch) {
   const Walker walker(colourful_medium(), method.settings);
   Flown flown;
   FlightStream flights;
-  WalkScratch scratch;
   for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
     std::vector<std::size_t> slots(std::min(batch, rays.size() - begin));
     std::iota(slots.begin(), slots.end(), begin);
     const RayStream part = select(rays, slots);
     const int channels = method.transmittance ? 1 : walker.channels();
     if (method.transmittance) {
-      walker.transmittance(part, flights, scratch, flown.statistics);
+      walker.transmittance(part, flights, flown.statistics);
     } else {
-      walker.free_paths(part, flights, scratch, flown.statistics);
+      walker.free_paths(part, flights, flown.statistics);
     }
     for (std::size_t i = 0; i < slots.size(); ++i) {
       flown.flights.push_back(flight_values(flights, i, channels));
