@@ -1,6 +1,5 @@
-// The sum of a medium's components, in lanes: bounds of a super-voxel and coefficients at a point.
-// A look-up has three stages, so that a walk can keep several groups of lanes in flight and hide
-// the latency of memory: aim (which voxel?), fetch (which brick?), coefficients (its value).
+// The sum of a medium's components, in lanes: bounds of a super-voxel, coefficients at a point, the
+// control of minima and what is left beside it, and the choice of the component that scatters.
 
 #if defined(FREEPATH_MEDIA_FIELD_SUM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FREEPATH_MEDIA_FIELD_SUM_INL_H_
@@ -9,8 +8,7 @@
 #define FREEPATH_MEDIA_FIELD_SUM_INL_H_
 #endif
 
-#include "freepath/base/lanes-inl.h"
-#include "freepath/media/medium_view.h"
+#include "freepath/media/field_lookup-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
@@ -23,114 +21,178 @@ struct Coefficients {
   VecF emission[N];
 };
 
+/// What is left of the coefficients beside a control; may be negative.
+template <int N>
+struct ResidualCoefficients : Coefficients<N> {
+  VecF sigma_t[N];       ///< Of the whole, control included.
+  VecF scatter_size[N];  ///< Σ_k |ρ_k - control_k| σ_s,k: what a choice among scatterings needs.
+};
+
 /// Bounds of the extinction over a segment [1/m].
 template <int N>
 struct SegmentBounds {
   VecF majorant[N];
+  VecF minorant[N];  ///< Only where it is asked for.
 };
 
 template <int N>
 class FieldSum {
  public:
   using Coefficients = HWY_NAMESPACE::Coefficients<N>;
+  using Residual = ResidualCoefficients<N>;
   using Bounds = SegmentBounds<N>;
+  using State = FieldLookup::State;
 
-  /// A look-up on its way, one row a lane.
-  struct State {
-    HWY_ALIGN_MAX int32_t voxel[3][kLanes];   ///< Base voxel, from the first of the index.
-    HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
-    HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
-    HWY_ALIGN_MAX int32_t address[Medium::kMaxComponents][kLanes];  ///< Voxel in the array.
+  /// Control densities of a group, one row a lane.
+  struct Control {
+    HWY_ALIGN_MAX float density[Medium::kMaxComponents][kLanes];
   };
 
-  explicit FieldSum(const MediumView& medium)
-      : medium_(medium), size_(static_cast<float>(medium.cell_size)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      last_voxel_[axis] = static_cast<float>(medium.brick_counts[axis] * BrickMap::kBrickSize - 2);
+  explicit FieldSum(const MediumView& medium) : medium_(medium), lookup_(medium) {
+    for (int channel = 0; channel < N; ++channel) {
+      float scattered = 0;
+      float total = 0;
+      for (int k = 0; k < medium.component_count; ++k) {
+        scattered += medium.components[k].sigma_s[channel];
+        total += medium.components[k].sigma_s[channel] + medium.components[k].sigma_a[channel];
+      }
+      albedo_[channel] = total > 0 ? scattered / total : 0;
     }
   }
 
+  /// Of each channel: the albedo where all densities are the same.
+  const float* albedo() const { return albedo_; }
+
+  int component_count() const { return medium_.component_count; }
+  const FieldLookup& lookup() const { return lookup_; }
+
   /// @param segment with the place of the super-voxel's record in Medium::walk_cells(), and its
   ///   first number, which is negative in an empty cell
-  template <class Segment>
+  template <bool kMinorant, class Segment>
   HWY_INLINE Bounds bounds(const Segment& segment) const {
     Bounds bounds;
-    for (int channel = 0; channel < N; ++channel) bounds.majorant[channel] = hn::Zero(kFloat);
+    for (int channel = 0; channel < N; ++channel) {
+      bounds.majorant[channel] = bounds.minorant[channel] = hn::Zero(kFloat);
+    }
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF density = k == 0 ? hn::Max(segment.head, hn::Zero(kFloat))
-                                  : hn::GatherIndex(kFloat, medium_.cells + k, segment.record);
+      const VecF most = maximum(k, segment);
+      const VecF least = kMinorant ? hn::GatherIndex(kFloat, medium_.minima + k, segment.record)
+                                   : hn::Zero(kFloat);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
         const float sigma_t = component.sigma_a[channel] + component.sigma_s[channel];
-        bounds.majorant[channel] = hn::MulAdd(density, set(sigma_t), bounds.majorant[channel]);
+        add(bounds.majorant[channel], most, sigma_t);
+        if (kMinorant) add(bounds.minorant[channel], least, sigma_t);
       }
     }
     return bounds;
   }
 
-  /// Stage 1: the voxel to read at a point [walk space]; the random words choose among the eight
-  /// neighbours under stochastic interpolation. One tap serves all components.
-  HWY_INLINE void aim(const VecF (&point)[3], MaskF lanes, VecU bits0, VecU bits1,
-                      State& state) const {
-    VecU random[3];
-    random[0] = hn::ShiftRight<11>(bits0);
-    random[1] = hn::ShiftRight<11>(bits1);
-    random[2] = hn::Or(hn::ShiftLeft<10>(hn::And(bits0, hn::Set(kUint, 0x7FF))),
-                       hn::And(bits1, hn::Set(kUint, 0x3FF)));
-    VecI voxel[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      VecF place = hn::Mul(point[axis], set(size_));
-      if (medium_.interpolation != Interpolation::kNearest) place = hn::Sub(place, set(0.5F));
-      place = hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last_voxel_[axis]));
-      const VecF base = hn::Floor(place);
-      voxel[axis] = small_to_int(base);
-      const VecF fraction = hn::Sub(place, base);
-      if (medium_.interpolation == Interpolation::kStochastic) {
-        // 21 bits an axis, in the middle of their interval so that rounding favours no side.
-        const VecF u =
-            hn::Mul(hn::Add(hn::ConvertTo(kFloat, hn::BitCast(kInt, random[axis])), set(0.5F)),
-                    set(0x1p-21F));
-        const VecI next = hn::VecFromMask(kInt, int_mask(hn::Lt(u, fraction)));
-        voxel[axis] = hn::Sub(voxel[axis], next);  // a true lane is -1
-      } else if (medium_.interpolation == Interpolation::kTrilinear) {
-        hn::Store(fraction, kFloat, state.fraction[axis]);
-      }
-      voxel[axis] = hn::IfThenElseZero(int_mask(lanes), voxel[axis]);
-      hn::Store(voxel[axis], kInt, state.voxel[axis]);
-    }
-    const VecI entry = brick_entry(voxel);
-    hn::Store(entry, kInt, state.entry);
-    for (int k = 0; k < medium_.component_count; ++k) {
-      prefetch_lanes(medium_.components[k].index, state.entry);
-    }
-  }
-
-  /// Stage 2: the brick of that voxel.
-  HWY_INLINE void fetch(State& state) const {
-    VecI voxel[3];
-    for (int axis = 0; axis < 3; ++axis) voxel[axis] = hn::Load(kInt, state.voxel[axis]);
-    const VecI within = voxel_in_brick(voxel);
-    const VecI entry = hn::Load(kInt, state.entry);
-    for (int k = 0; k < medium_.component_count; ++k) {
-      const VecI address = voxel_address(k, entry, within);
-      hn::Store(address, kInt, state.address[k]);
-      prefetch_lanes(medium_.components[k].voxels, state.address[k]);
-    }
-  }
-
-  /// Stage 3: the density of one component.
-  HWY_INLINE VecF density(int k, const State& state) const {
-    if (medium_.interpolation == Interpolation::kTrilinear) return trilinear(k, state);
-    return hn::GatherIndex(kFloat, medium_.components[k].voxels, hn::Load(kInt, state.address[k]));
-  }
-
   HWY_INLINE Coefficients coefficients(const State& state) const {
+    return sum([&](int k) { return lookup_.density(k, state); });
+  }
+
+  /// The control of a super-voxel: its minima times `scale`.
+  HWY_INLINE void set_control(VecI record, float scale, Control& control) const {
+    for (int k = 0; k < medium_.component_count; ++k) {
+      const VecF least = hn::GatherIndex(kFloat, medium_.minima + k, record);
+      hn::Store(hn::Mul(least, set(scale)), kFloat, control.density[k]);
+    }
+  }
+  HWY_INLINE Coefficients coefficients(const Control& control) const {
+    return sum([&](int k) { return hn::Load(kFloat, control.density[k]); });
+  }
+  HWY_INLINE Residual residual(const State& state, const Control& control) const {
+    Residual left;
+    static_cast<Coefficients&>(left) =
+        sum([&](int k) { return residual_density(k, state, control); });
+    for (int channel = 0; channel < N; ++channel) {
+      left.sigma_t[channel] = left.scatter_size[channel] = hn::Zero(kFloat);
+    }
+    for (int k = 0; k < medium_.component_count; ++k) {
+      const ComponentView& component = medium_.components[k];
+      const VecF density = lookup_.density(k, state);
+      const VecF size = hn::Abs(residual_density(k, state, control));
+      for (int channel = 0; channel < N; ++channel) {
+        add(left.sigma_t[channel], density,
+            component.sigma_a[channel] + component.sigma_s[channel]);
+        add(left.scatter_size[channel], size, component.sigma_s[channel]);
+      }
+    }
+    return left;
+  }
+
+  /// Chooses the component that a scattering belongs to, with probability proportional to the mean
+  /// over channels of |sigma_s,k|, and corrects the weights by sigma_s,k(λ)/(sigma_s(λ) P_k).
+  HWY_INLINE VecI choose_component(const State& state, const Coefficients& total, VecF uniform,
+                                   MaskF lanes, VecF (&weight)[N]) const {
+    return choose([&](int k) { return lookup_.density(k, state); }, total, uniform, lanes, weight);
+  }
+  HWY_INLINE VecI choose_component(const Control& control, const Coefficients& total, VecF uniform,
+                                   MaskF lanes, VecF (&weight)[N]) const {
+    return choose([&](int k) { return hn::Load(kFloat, control.density[k]); }, total, uniform,
+                  lanes, weight);
+  }
+  HWY_INLINE VecI choose_component(const State& state, const Control& control,
+                                   const Residual& total, VecF uniform, MaskF lanes,
+                                   VecF (&weight)[N]) const {
+    return choose([&](int k) { return residual_density(k, state, control); }, total, uniform, lanes,
+                  weight);
+  }
+
+  /// Draws the component that a tentative collision belongs to, with probability rate_k/rate, and
+  /// leaves a fresh uniform number and that component's rate [Galtier16].
+  template <class Segment>
+  HWY_INLINE VecI draw_component(const Segment& segment, VecF& uniform, VecF& rate) const {
+    VecI chosen = hn::Zero(kInt);
+    VecF chosen_rate = hn::Zero(kFloat);
+    VecF before = hn::Zero(kFloat);  // rates of the components up to the one chosen
+    VecF passed = hn::Zero(kFloat);
+    const VecF wanted = hn::Mul(uniform, rate);
+    for (int k = 0; k < medium_.component_count; ++k) {
+      const float sigma_t = medium_.components[k].sigma_a[0] + medium_.components[k].sigma_s[0];
+      const VecF rate_k = hn::Mul(maximum(k, segment), set(sigma_t));
+      // The last component that can collide takes what rounding leaves over.
+      const MaskF here = hn::And(hn::Ge(wanted, passed), hn::Gt(rate_k, hn::Zero(kFloat)));
+      chosen = hn::IfThenElse(int_mask(here), hn::Set(kInt, k), chosen);
+      assign(chosen_rate, here, rate_k);
+      assign(before, here, passed);
+      passed = hn::Add(passed, rate_k);
+    }
+    const MaskF drawn = hn::Gt(chosen_rate, hn::Zero(kFloat));
+    rate = hn::IfThenElse(drawn, chosen_rate, set(1.0F));
+    uniform = hn::Min(hn::Div(hn::Sub(wanted, before), rate), set(1.0F - 0x1p-24F));
+    return chosen;
+  }
+  /// Coefficients of one component a lane.
+  HWY_INLINE Coefficients coefficients_of(VecI component, const State& state) const {
+    return sum(
+        [&](int k) { return lookup_.density(k, state, hn::Eq(component, hn::Set(kInt, k))); });
+  }
+
+ private:
+  static HWY_INLINE void add(VecF& sum, VecF density, float cross_section) {
+    sum = hn::MulAdd(density, set(cross_section), sum);
+  }
+
+  template <class Segment>
+  HWY_INLINE VecF maximum(int k, const Segment& segment) const {
+    return k == 0 ? hn::Max(segment.head, hn::Zero(kFloat))
+                  : hn::GatherIndex(kFloat, medium_.cells + k, segment.record);
+  }
+
+  HWY_INLINE VecF residual_density(int k, const State& state, const Control& control) const {
+    return hn::Sub(lookup_.density(k, state), hn::Load(kFloat, control.density[k]));
+  }
+
+  template <class Density>
+  HWY_INLINE Coefficients sum(const Density& density_of) const {
     Coefficients sum;
     for (int channel = 0; channel < N; ++channel) {
       sum.sigma_a[channel] = sum.sigma_s[channel] = sum.emission[channel] = hn::Zero(kFloat);
     }
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF density = this->density(k, state);
+      const VecF density = density_of(k);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
         add(sum.sigma_a[channel], density, component.sigma_a[channel]);
@@ -141,107 +203,60 @@ class FieldSum {
     return sum;
   }
 
-  /// Chooses the component that a scattering belongs to, with probability proportional to the mean
-  /// over channels of its sigma_s, and corrects the weights by sigma_s,k(λ)/(sigma_s(λ) P_k).
-  HWY_INLINE VecI choose_component(const State& state, const Coefficients& total, VecF uniform,
-                                   MaskF lanes, VecF (&weight)[N]) const {
+  /// Σ_λ σ_s,k(λ)
+  float scatter_sum(int k) const {
+    float sum = 0;
+    for (int channel = 0; channel < N; ++channel) sum += medium_.components[k].sigma_s[channel];
+    return sum;
+  }
+
+  template <class Density>
+  HWY_INLINE VecI choose(const Density& density_of, const Coefficients& total, VecF uniform,
+                         MaskF lanes, VecF (&weight)[N]) const {
     VecI chosen = hn::Zero(kInt);
     if (medium_.component_count == 1) return chosen;
     VecF sum = hn::Zero(kFloat);
-    for (int channel = 0; channel < N; ++channel) sum = hn::Add(sum, total.sigma_s[channel]);
+    for (int k = 0; k < medium_.component_count; ++k) {
+      add(sum, hn::Abs(density_of(k)), scatter_sum(k));
+    }
     VecF rest = hn::Mul(uniform, sum);
     MaskF open = lanes;
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF density = this->density(k, state);
-      const ComponentView& component = medium_.components[k];
-      VecF part = hn::Zero(kFloat);
-      for (int channel = 0; channel < N; ++channel) {
-        add(part, density, component.sigma_s[channel]);
-      }
+      const VecF part = hn::Mul(hn::Abs(density_of(k)), set(scatter_sum(k)));
       // The last component that can scatter takes what rounding leaves over.
-      MaskF here = hn::And(open, hn::Gt(part, hn::Zero(kFloat)));
+      const MaskF here = hn::And(open, hn::Gt(part, hn::Zero(kFloat)));
       const MaskF takes = hn::And(here, hn::Lt(rest, part));
       chosen = hn::IfThenElse(int_mask(here), hn::Set(kInt, k), chosen);
       open = hn::AndNot(takes, open);
       rest = hn::Sub(rest, part);
     }
-    if constexpr (N > 1) correct_weights(total, sum, chosen, lanes, weight);
+    correct_weights(density_of, total, sum, chosen, lanes, weight);
     return chosen;
   }
 
-  int component_count() const { return medium_.component_count; }
-
- private:
-  static HWY_INLINE void add(VecF& sum, VecF density, float cross_section) {
-    sum = hn::MulAdd(density, set(cross_section), sum);
-  }
-
-  HWY_INLINE void correct_weights(const Coefficients& total, VecF sum, VecI chosen, MaskF lanes,
-                                  VecF (&weight)[N]) const {
+  template <class Density>
+  HWY_INLINE void correct_weights(const Density& density_of, const Coefficients& total, VecF sum,
+                                  VecI chosen, MaskF lanes, VecF (&weight)[N]) const {
     for (int k = 0; k < medium_.component_count; ++k) {
       const MaskF mine = hn::And(lanes, float_mask(hn::Eq(chosen, hn::Set(kInt, k))));
       if (hn::AllFalse(kFloat, mine)) continue;
       const ComponentView& component = medium_.components[k];
-      float part = 0;
-      for (int channel = 0; channel < N; ++channel) part += component.sigma_s[channel];
+      const float part = scatter_sum(k);
       if (part <= 0) continue;
+      const VecF signed_sum = hn::CopySign(sum, density_of(k));
       for (int channel = 0; channel < N; ++channel) {
-        // density cancels: (density σ_s,k(λ) / σ_s(λ)) · (Σ σ_s / (density Σ_λ σ_s,k))
-        const VecF factor =
-            hn::Div(hn::Mul(set(component.sigma_s[channel] / part), sum), total.sigma_s[channel]);
-        const MaskF scatters = hn::And(mine, hn::Gt(total.sigma_s[channel], hn::Zero(kFloat)));
+        // |density| cancels: (density σ_s,k(λ) / σ_s(λ)) · (sum / (|density| Σ_λ σ_s,k))
+        const MaskF scatters = hn::And(mine, hn::Ne(total.sigma_s[channel], hn::Zero(kFloat)));
+        const VecF factor = hn::Div(hn::Mul(set(component.sigma_s[channel] / part), signed_sum),
+                                    hn::IfThenElse(scatters, total.sigma_s[channel], set(1.0F)));
         assign(weight[channel], scatters, hn::Mul(weight[channel], factor));
       }
     }
   }
 
-  HWY_INLINE VecI brick_entry(const VecI (&voxel)[3]) const {
-    const VecI row =
-        hn::Add(hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, medium_.brick_counts[1])),
-                hn::ShiftRight<3>(voxel[1]));
-    return hn::Add(hn::Mul(row, hn::Set(kInt, medium_.brick_counts[2])),
-                   hn::ShiftRight<3>(voxel[2]));
-  }
-
-  static HWY_INLINE VecI voxel_in_brick(const VecI (&voxel)[3]) {
-    const VecI low = hn::Set(kInt, 7);
-    return hn::Or(
-        hn::Or(hn::ShiftLeft<6>(hn::And(voxel[0], low)), hn::ShiftLeft<3>(hn::And(voxel[1], low))),
-        hn::And(voxel[2], low));
-  }
-
-  HWY_INLINE VecI voxel_address(int k, VecI entry, VecI within) const {
-    const auto* index = reinterpret_cast<const int32_t*>(medium_.components[k].index);
-    return hn::Or(hn::ShiftLeft<9>(hn::GatherIndex(kInt, index, entry)), within);
-  }
-
-  HWY_INLINE VecF trilinear(int k, const State& state) const {
-    VecI voxel[2][3];
-    VecF weight[2][3];
-    for (int axis = 0; axis < 3; ++axis) {
-      voxel[0][axis] = hn::Load(kInt, state.voxel[axis]);
-      voxel[1][axis] = hn::Add(voxel[0][axis], hn::Set(kInt, 1));
-      weight[1][axis] = hn::Load(kFloat, state.fraction[axis]);
-      weight[0][axis] = hn::Sub(set(1.0F), weight[1][axis]);
-    }
-    VecF sum = hn::Zero(kFloat);
-    for (int x = 0; x < 2; ++x) {
-      for (int y = 0; y < 2; ++y) {
-        const VecF weight_xy = hn::Mul(weight[x][0], weight[y][1]);
-        for (int z = 0; z < 2; ++z) {
-          const VecI corner[3] = {voxel[x][0], voxel[y][1], voxel[z][2]};
-          const VecI address = voxel_address(k, brick_entry(corner), voxel_in_brick(corner));
-          const VecF value = hn::GatherIndex(kFloat, medium_.components[k].voxels, address);
-          sum = hn::MulAdd(hn::Mul(weight_xy, weight[z][2]), value, sum);
-        }
-      }
-    }
-    return sum;
-  }
-
   MediumView medium_;
-  float size_;
-  float last_voxel_[3];
+  FieldLookup lookup_;
+  float albedo_[N];
 };
 
 }  // namespace freepath::HWY_NAMESPACE

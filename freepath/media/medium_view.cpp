@@ -15,6 +15,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
   }
   view.cell_size = cells.cell_size;
   view.cells = medium.walk_cells().data();
+  view.minima = cells.minima.data();
   view.world_to_walk = medium.world_to_walk();
   view.interpolation = interpolation;
   view.component_count = static_cast<int>(medium.components().size());

@@ -21,7 +21,8 @@ struct ComponentView {
 struct MediumView {
   std::array<int32_t, 3> cell_counts{};
   int32_t cell_size = 1;
-  const float* cells = nullptr;  ///< Medium::walk_cells()
+  const float* cells = nullptr;   ///< Medium::walk_cells()
+  const float* minima = nullptr;  ///< SuperVoxels::minima
   std::array<int32_t, 3> brick_counts{};
   std::array<float, 3> bounds_min{};  ///< Where the walk takes place [walk space].
   std::array<float, 3> bounds_max{};

@@ -111,6 +111,14 @@ class SuperVoxelSegments {
     return s;
   }
 
+  /// The record at the cursor alone, without the segment's end.
+  HWY_INLINE Segment record(const Cursor& cursor, MaskF lanes) const {
+    Segment s;
+    s.record = hn::IfThenElseZero(int_mask(lanes), cursor.record);
+    s.head = hn::GatherIndex(kFloat, medium_.cells, s.record);
+    return s;
+  }
+
   /// Moves the lanes of the mask, whose t is the segment's exit, into the next cell. Cells only
   /// ever advance in the ray's direction, whatever rounding does, so every walk ends.
   /// @return the lanes that are still inside the super-voxels

@@ -19,13 +19,40 @@ namespace freepath::HWY_NAMESPACE {
 template <int N>
 struct Collision {
   MaskF lanes;
-  VecF rate;     ///< Density of tentative collisions here [1/m].
-  VecF uniform;  ///< [0,1), for the choice of the event.
+  VecF rate;       ///< Density of tentative collisions here [1/m], of what is still to be decided.
+  VecF full_rate;  ///< The same before a control has decided its part.
+  VecF uniform;    ///< [0,1), for the choice of the event.
   VecF weight[N];
   VecF emitted[N];  ///< Tally of emitted radiance so far.
-  MaskF scatter;    ///< Set by the tracker; neither: null.
+  MaskF scatter;
   MaskF absorb;
   VecF scatter_uniform;  ///< [0,1) given a scattering, to choose its component.
+  VecF* rows = nullptr;  ///< The method's own rows.
+  VecF depth;            ///< Optical depth since the last tentative collision, if asked for.
+};
+
+/// What the walk asks of a method; one that needs more says so in its own constants.
+struct MethodTraits {
+  /// Biased where sigma_t exceeds the rate; such collisions are counted.
+  static constexpr bool kNeedsBound = false;
+  /// Decides on a control before any look-up: decide(), control_scale(); collide() then gets
+  /// residual coefficients.
+  static constexpr bool kControl = false;
+  /// Whether it does decide, or wants the residual coefficients alone.
+  static constexpr bool kDecides = true;
+  /// Whether rate() wants the minorant too.
+  static constexpr bool kRateNeedsControl = false;
+  /// Draws one component at a collision and looks up no other.
+  static constexpr bool kOneComponent = false;
+  /// Rows of its own for each lane, set by begin() and turned into the final weight by finish().
+  template <int N>
+  static constexpr int kRows = 0;
+  /// Has advance(): what a stretch of the ray does to its rows without any collision.
+  static constexpr bool kAdvances = false;
+  /// Has begin(): draws the channel that leads a flight; carries path densities from ray to flight.
+  static constexpr bool kDrawsHero = false;
+  /// Its collide() wants the optical depth, by its rate, since the last tentative collision.
+  static constexpr bool kNeedsDepth = false;
 };
 
 /// Mean over channels.
@@ -37,10 +64,26 @@ HWY_INLINE VecF channel_mean(const VecF (&values)[N]) {
   return sum;
 }
 
+template <int N>
+HWY_INLINE VecF channel_max(const VecF (&values)[N]) {
+  VecF largest = values[0];
+  for (int channel = 1; channel < N; ++channel) largest = hn::Max(largest, values[channel]);
+  return largest;
+}
+
 /// a/b, and 0 where b is 0 (only reached by lanes for which the event is impossible).
 HWY_INLINE VecF divide_or_zero(VecF a, VecF b) {
   const MaskF possible = hn::Ne(b, hn::Zero(kFloat));
   return hn::IfThenElseZero(possible, hn::Div(a, hn::IfThenElse(possible, b, set(1.0F))));
+}
+
+/// Adds w · emission · share to the tally.
+template <int N>
+HWY_INLINE void tally_emission(const VecF (&emission)[N], VecF share, Collision<N>& c) {
+  for (int channel = 0; channel < N; ++channel) {
+    c.emitted[channel] =
+        hn::MulAdd(hn::Mul(c.weight[channel], emission[channel]), share, c.emitted[channel]);
+  }
 }
 
 /// The events at which analog emission is counted: absorptions, or every real collision where
@@ -50,20 +93,23 @@ HWY_INLINE MaskF emission_event(const WalkModes& modes, const Collision<N>& c, M
   return modes.absorption == Absorption::kWeighted ? collided : c.absorb;
 }
 
-/// Chooses absorption, scattering or null with probabilities in proportion to `absorb`, `scatter`
-/// and `null` (each ≥ 0) and weights the event. Under weighted absorption the absorbed part
-/// scatters too and the weight takes the albedo. Emission is tallied at every tentative collision,
-/// or at the real ones alone.
+/// Under weighted absorption the absorbed part scatters too, and the weight takes the albedo.
+HWY_INLINE void merge_absorption(const WalkModes& modes, VecF& absorb, VecF& scatter) {
+  if (modes.absorption != Absorption::kWeighted) return;
+  scatter = hn::Add(absorb, scatter);
+  absorb = hn::Zero(kFloat);
+}
+
+/// Chooses absorption, scattering or null with probabilities in proportion to `probability` (each
+/// ≥ 0) and weights the event. Emission is tallied at every tentative collision, or at the real
+/// ones alone.
 ///
 /// @param probability unnormalised probabilities of absorption, scattering, null
 /// @param sigma_n null coefficient of each channel [1/m]
 template <int N, class Coefficients>
 HWY_INLINE void choose_event(const WalkModes& modes, const Coefficients& sigma,
                              const VecF (&sigma_n)[N], VecF (&probability)[3], Collision<N>& c) {
-  if (modes.absorption == Absorption::kWeighted) {
-    probability[1] = hn::Add(probability[0], probability[1]);
-    probability[0] = hn::Zero(kFloat);
-  }
+  merge_absorption(modes, probability[0], probability[1]);
   const VecF real = hn::Add(probability[0], probability[1]);
   const VecF total = hn::Add(real, probability[2]);
   const VecF chosen = hn::Mul(c.uniform, total);
@@ -77,14 +123,13 @@ HWY_INLINE void choose_event(const WalkModes& modes, const Coefficients& sigma,
   const VecF per_rate = hn::Div(set(1.0F), c.rate);
   const VecF scale = hn::Mul(divide_or_zero(total, event_probability), per_rate);
   const MaskF collided = hn::Or(c.absorb, c.scatter);
+  if (modes.emits) {
+    const VecF share = modes.emission == EmissionTally::kCollision
+                           ? per_rate
+                           : hn::IfThenElseZero(emission_event(modes, c, collided), scale);
+    tally_emission<N>(sigma.emission, share, c);
+  }
   for (int channel = 0; channel < N; ++channel) {
-    if (modes.emits) {
-      const VecF share = modes.emission == EmissionTally::kCollision
-                             ? per_rate
-                             : hn::IfThenElseZero(emission_event(modes, c, collided), scale);
-      c.emitted[channel] = hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share,
-                                      c.emitted[channel]);
-    }
     const VecF coefficient =
         hn::IfThenElse(c.absorb, sigma.sigma_a[channel],
                        hn::IfThenElse(c.scatter, sigma.sigma_s[channel], sigma_n[channel]));

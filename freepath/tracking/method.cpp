@@ -1,5 +1,7 @@
 #include "freepath/tracking/method.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -42,6 +44,16 @@ void set_option(Method& method, const MethodInfo& info, std::string_view assignm
          found->standard);
   }
   const std::string_view text = assignment.substr(equals + 1);
+  float& target = method.options[found - info.options.begin()];
+  if (!found->choices.empty()) {
+    const auto choice = std::find(found->choices.begin(), found->choices.end(), text);
+    if (choice == found->choices.end()) {
+      fail("option '{}' of '{}': there is no '{}'; known are: {}", name, info.name, text,
+           fmt::join(found->choices, ", "));
+    }
+    target = static_cast<float>(choice - found->choices.begin());
+    return;
+  }
   float value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
@@ -51,7 +63,7 @@ void set_option(Method& method, const MethodInfo& info, std::string_view assignm
     fail("option '{}' of '{}': {} is outside {} to {}", name, info.name, value, found->minimum,
          found->maximum);
   }
-  method.options[found - info.options.begin()] = value;
+  target = value;
 }
 
 }  // namespace
@@ -81,7 +93,11 @@ std::string to_string(const Method& method, std::span<const MethodInfo> known) {
   char separator = ':';
   for (std::size_t i = 0; i < info.options.size(); ++i) {
     if (method.options[i] == info.options[i].standard) continue;
-    text += fmt::format("{}{}={}", separator, info.options[i].name, method.options[i]);
+    const MethodOption& option = info.options[i];
+    const float value = method.options[i];
+    text += option.choices.empty() ? fmt::format("{}{}={}", separator, option.name, value)
+                                   : fmt::format("{}{}={}", separator, option.name,
+                                                 option.choices[static_cast<std::size_t>(value)]);
     separator = ',';
   }
   return text;

@@ -8,13 +8,15 @@
 
 namespace freepath {
 
-/// One numeric option of a method.
+/// One option of a method: a number, or one of some words.
 struct MethodOption {
   std::string_view name;
   float standard = 0;  ///< Value when nothing is said.
   float minimum = 0;
   float maximum = 0;
   std::string_view meaning;
+  /// The words, if it takes words; the option's value is then a place among them.
+  std::span<const std::string_view> choices{};
 };
 
 /// What users may know of a method. All trackers and estimators carry one, and every list, help
@@ -26,9 +28,15 @@ struct MethodInfo {
   std::string_view unbiased;  ///< When it is unbiased.
   std::string_view source;    ///< Citation key and equation.
   std::span<const MethodOption> options;
+  /// Whether one path carries channels whose extinctions differ; else each takes a path of its own.
+  bool chromatic = false;
+  bool biased = false;
+  bool one_channel = false;  ///< Gives each channel its own path, always.
 };
 
 inline constexpr int kMaxMethodOptions = 4;
+
+inline constexpr std::string_view kNoYes[] = {"no", "yes"};
 
 /// A method with the values of its options, in the order of MethodInfo::options.
 struct Method {
@@ -36,7 +44,8 @@ struct Method {
   std::array<float, kMaxMethodOptions> options{};
 };
 
-/// Reads "name" or "name:option=value,option=value".
+/// Reads "name" or "name:option=value,option=value", where a value is a number or one of the words
+/// that the option knows.
 /// @throws Error for an unknown name or option, listing those there are, and for a value that is no
 ///   number or out of range
 Method parse_method(std::string_view text, std::span<const MethodInfo> known);

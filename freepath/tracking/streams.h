@@ -24,8 +24,21 @@ struct RayStream {
   std::vector<uint32_t> pixel;
   std::vector<uint32_t> sample;
   std::vector<uint32_t> stream;  ///< See stream_number().
+  /// Throughput of the paths so far, where it is set: flights go on from these weights and not from
+  /// 1, and methods that look at the path's history see it.
+  std::array<std::vector<float>, kChannels> weight;
+  /// Relative densities of those paths, had each channel been the hero (FlightStream::density).
+  std::array<std::vector<float>, kChannels> density;
 
   std::size_t size() const { return count_; }
+  /// Whether the rays bring weights along.
+  bool weighted() const { return !weight[0].empty(); }
+  /// Makes room for weights and densities, or takes it away.
+  void set_weighted(bool wanted) {
+    for (auto* group : {&weight, &density}) {
+      for (auto& values : *group) values.resize(wanted ? t_max.size() : 0, 1.0F);
+    }
+  }
   void resize(std::size_t count) {
     count_ = count;
     const std::size_t padded = count + kStreamPadding;
@@ -34,20 +47,23 @@ struct RayStream {
     for (auto& values : direction) values.resize(padded);
     t_max.resize(padded);
     for (auto* values : {&pixel, &sample, &stream}) values->resize(padded);
+    if (weighted()) set_weighted(true);
   }
 
  private:
   std::size_t count_ = 0;
 };
 
-/// What became of the rays, in the same slots. Weights start at 1; a walk of one channel writes the
-/// first weight alone.
+/// What became of the rays, in the same slots. Weights start at 1, or at those of the rays; a walk
+/// of one channel writes the first weight alone.
 struct FlightStream {
   std::vector<float> t;  ///< Distance flown [world].
   std::vector<Event> event;
   std::vector<uint8_t> component;  ///< Of a scattering.
   std::array<std::vector<float>, kChannels> weight;
   std::array<std::vector<float>, kChannels> emitted;  ///< Emitted radiance collected on the way.
+  /// With hero-wavelength: relative densities of the path, to be handed on with its next ray.
+  std::array<std::vector<float>, kChannels> density;
   std::vector<uint32_t> lookups;
 
   std::size_t size() const { return count_; }
@@ -60,6 +76,7 @@ struct FlightStream {
     component.resize(padded);
     for (auto& values : weight) values.resize(padded);
     for (auto& values : emitted) values.resize(padded);
+    for (auto& values : density) values.resize(padded, 1.0F);
     lookups.resize(padded);
   }
 

@@ -1,48 +1,32 @@
-// The one place where trackers and media meet: instantiates every method for every SIMD target.
+// The table of all compiled methods, by SIMD target.
 
 #include "freepath/transport/kernels.h"
 
-// Machines with SSSE3 but no SSE4 are older than this kind of work. A build with sanitizers, which
-// takes minutes for each target, names fewer (CMakeLists.txt).
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS HWY_SSSE3
-#endif
-
+#include "freepath/transport/simd_targets.h"
+// simd_targets.h comes first: it says which targets there are.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "freepath/transport/kernels.cpp"
 #include <hwy/foreach_target.h>
-// foreach_target.h comes first: it includes this file once for each target.
+// foreach_target.h comes next: it includes this file once for each target.
 #include <hwy/highway.h>
-
-#include "freepath/media/field_sum-inl.h"
-#include "freepath/media/segments-inl.h"
-#include "freepath/tracking/walk-inl.h"
-#include "freepath/transport/entry-inl.h"
-#include "freepath/transport/registry-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
-template <int N, class Method>
-void walk_stream(const MediumView& medium, std::span<const float> options, const WalkModes& modes,
-                 uint64_t seed, const RayStream& rays, FlightStream& flights,
-                 WalkStatistics& statistics) {
-  MediumEntry entry(medium, rays);
-  const Method method(options);
-  const SuperVoxelSegments segments(medium);
-  const FieldSum<N> fields(medium);
-  Walk<N, Method, SuperVoxelSegments, FieldSum<N>, MediumEntry>(
-      method, segments, fields, modes, seed, rays, entry, flights, statistics)
-      .run();
-}
-
-template <class... Methods>
-std::vector<Kernel> make_kernels(MethodList<Methods...> /*list*/) {
-  return {Kernel{Methods::kInfo, &walk_stream<1, Methods>, &walk_stream<kChannels, Methods>}...};
-}
+// Each compiled in a file of its own.
+std::vector<Kernel> make_delta_kernels();
+std::vector<Kernel> make_decomposition_kernels();
+std::vector<Kernel> make_spectral_kernels();
+std::vector<Kernel> make_transmittance_kernels();
 
 KernelTable make_table() {
-  return {make_kernels(TrackerList{}), make_kernels(TransmittanceList{})};
+  KernelTable table;
+  for (const auto make : {make_delta_kernels, make_decomposition_kernels, make_spectral_kernels}) {
+    const std::vector<Kernel> kernels = make();
+    table.trackers.insert(table.trackers.end(), kernels.begin(), kernels.end());
+  }
+  table.transmittance = make_transmittance_kernels();
+  return table;
 }
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -1,5 +1,6 @@
 #include "freepath/transport/walker.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "freepath/base/error.h"
@@ -21,6 +22,13 @@ const Kernel& find(const std::vector<Kernel>& kernels, const std::string& name) 
   fail("there is no kernel '{}'", name);
 }
 
+/// What a method, given with its options, says of itself.
+const MethodInfo& info_of(const std::string& text, std::span<const MethodInfo> known) {
+  const std::string name = parse_method(text, known).name;
+  return *std::find_if(known.begin(), known.end(),
+                       [&](const MethodInfo& info) { return info.name == name; });
+}
+
 }  // namespace
 
 std::span<const MethodInfo> tracker_infos() {
@@ -33,12 +41,18 @@ std::span<const MethodInfo> transmittance_infos() {
   return kInfos;
 }
 
+bool shares_paths(const Medium& medium, const WalkSettings& settings) {
+  const MethodInfo info = info_of(settings.tracker, tracker_infos());
+  return info.chromatic || (medium.has_grey_extinction() && !info.one_channel);
+}
+
 Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
     : view_(view_of(medium, settings.interpolation, channel)),
       seed_(settings.seed),
       channels_(channel == kAllChannels && !medium.is_grey() ? kChannels : 1) {
-  if (channel == kAllChannels && !medium.has_grey_extinction()) {
-    fail("the extinction differs between channels: trace each channel by itself");
+  if (channel == kAllChannels && !shares_paths(medium, settings)) {
+    fail("tracker '{}' gives each channel of this medium its own path: walk each by itself",
+         settings.tracker);
   }
   const KernelTable& table = kernels(settings.simd);
   tracker_.method = parse_method(settings.tracker, tracker_infos());
@@ -48,7 +62,9 @@ Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
   const bool one = channels_ == 1;
   tracker_.function = one ? tracker.one_channel : tracker.all_channels;
   // One extinction for all channels makes one transmittance.
-  transmittance_.function = transmittance.one_channel;
+  transmittance_channels_ = medium.has_grey_extinction() ? 1 : channels_;
+  transmittance_.function =
+      transmittance_channels_ == 1 ? transmittance.one_channel : transmittance.all_channels;
   modes_ = {settings.absorption, settings.emission, medium.emits()};
 }
 

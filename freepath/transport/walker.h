@@ -23,6 +23,11 @@ struct WalkSettings {
 std::span<const MethodInfo> tracker_infos();
 std::span<const MethodInfo> transmittance_infos();
 
+/// Whether one path can carry all channels: the tracker is spectral, or the extinction is the same
+/// in all. Otherwise each channel takes paths of its own, by a walker of its own.
+/// @throws Error for a tracker that does not exist
+bool shares_paths(const Medium& medium, const WalkSettings& settings);
+
 /// Samples free paths and estimates transmittances in one medium. Const and without state of its
 /// own: any number of threads may share it, each with its own streams.
 class Walker {
@@ -31,12 +36,9 @@ class Walker {
   static constexpr int kAllChannels = -1;
 
   /// @param medium must outlive the walker
-  /// @param channel the one channel to carry, or kAllChannels, which needs an extinction that is
-  /// the
-  ///   same in all (Medium::has_grey_extinction)
-  /// @throws Error for methods, options or instructions that do not exist, and for kAllChannels in
-  /// a
-  ///   medium with chromatic extinction
+  /// @param channel the one channel to carry, or kAllChannels, which needs shares_paths()
+  /// @throws Error for methods, options or instructions that do not exist, and for kAllChannels
+  ///   where each channel must take its own path
   Walker(const Medium& medium, const WalkSettings& settings, int channel = kAllChannels);
 
   /// Flies every ray to its next scattering, absorption or escape [Kutz17]. Flights are written to
@@ -49,6 +51,8 @@ class Walker {
 
   /// Channels in the weights of a flight: 1 or kChannels.
   int channels() const { return channels_; }
+  /// Channels in the weights of a transmittance: 1 where one extinction serves all.
+  int transmittance_channels() const { return transmittance_channels_; }
 
  private:
   struct Bound {
@@ -64,6 +68,7 @@ class Walker {
   WalkModes modes_;
   uint64_t seed_;
   int channels_;
+  int transmittance_channels_ = 1;
 };
 
 }  // namespace freepath

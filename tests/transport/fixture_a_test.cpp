@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kBatch = 100'000;
 
 struct Case {
-  const char* tracker;
+  std::string tracker;
   Absorption absorption;
   EmissionTally emission;
 };
@@ -37,42 +37,78 @@ WalkSettings settings_for(const Case& test, Simd simd) {
   return settings;
 }
 
+/// Factors on what emission and scattering contribute, 1 unless an error is planted.
+using Planted = std::array<double, 2>;
+
 /// Radiance that a flight along x brings back: the tally, and what its end sees.
-/// @param planted factors on what emission and scattering contribute, 1 unless an error is planted
-double radiance(const FlightStream& flights, std::size_t i, int channel,
-                const std::array<double, 2>& planted) {
+/// @param slot of the channel in the flight
+double radiance(const FlightStream& flights, std::size_t i, int channel, int slot,
+                const Planted& planted) {
   double ending = 0;
   if (flights.event[i] == Event::kEscape) ending = 1;
   if (flights.event[i] == Event::kScatter) {
     ending = planted[1] * FixtureA::scattered(flights.t[i], channel);
   }
-  return planted[0] * flights.emitted[0][i] + flights.weight[0][i] * ending;
+  return planted[0] * flights.emitted[slot][i] + flights.weight[slot][i] * ending;
 }
 
-/// Enough paths for a standard error of 0.2 %: weights of both signs need more.
+/// Enough paths for a standard error of 0.2 %: weights of both signs, or large ones, need more.
 std::size_t paths_for(const Case& test) {
-  return std::string(test.tracker).find("0.7") != std::string::npos ? 2'000'000 : 400'000;
+  const auto has = [&](const char* text) { return test.tracker.find(text) != std::string::npos; };
+  if (has("=max") || has("=average")) return 3'000'000;
+  return has("scale=0.7") ? 2'000'000 : has("spectral") ? 1'000'000 : 400'000;
 }
 
-RunningStatistics estimate_radiance(const Medium& medium, const WalkSettings& settings, int channel,
-                                    std::size_t paths, WalkStatistics& statistics,
-                                    const std::array<double, 2>& planted = {1, 1}) {
-  const Walker walker(medium, settings, channel);
+struct FixtureResult {
+  std::array<RunningStatistics, kChannels> radiance;
+  WalkStatistics walk;
+};
+
+/// All channels of one path, or one after the other.
+FixtureResult estimate_radiance(const Medium& medium, const WalkSettings& settings,
+                                std::size_t paths, const Planted& planted = {1, 1}) {
+  FixtureResult result;
+  const bool shared = shares_paths(medium, settings);
   FlightStream flights;
-  RunningStatistics result;
-  for (std::size_t done = 0; done < paths; done += kBatch) {
-    const RayStream rays =
-        repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, kBatch, static_cast<uint32_t>(done));
-    walker.free_paths(rays, flights, statistics);
-    for (std::size_t i = 0; i < kBatch; ++i) result.add(radiance(flights, i, channel, planted));
+  for (int turn = 0; turn < (shared ? 1 : kChannels); ++turn) {
+    const Walker walker(medium, settings, shared ? Walker::kAllChannels : turn);
+    for (std::size_t done = 0; done < paths; done += kBatch) {
+      const RayStream rays =
+          repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, kBatch, static_cast<uint32_t>(done));
+      walker.free_paths(rays, flights, result.walk);
+      for (int slot = 0; slot < walker.channels(); ++slot) {
+        const int channel = shared ? slot : turn;
+        for (std::size_t i = 0; i < kBatch; ++i) {
+          result.radiance[channel].add(radiance(flights, i, channel, slot, planted));
+        }
+      }
+    }
   }
   return result;
 }
 
+/// Every tracker of the registry, and the options that change its law.
+std::vector<std::string> tracker_variants() {
+  std::vector<std::string> variants;
+  for (const MethodInfo& info : tracker_infos()) variants.emplace_back(info.name);
+  for (const char* variant :
+       {"weighted-delta:rate-scale=0.7", "weighted-delta:rate-scale=2",
+        "weighted-delta:energy-partitioning=yes", "weighted-decomposition:control=1.3",
+        "weighted-decomposition:control=0.5,rate-scale=0.7", "spectral:collision-probability=max",
+        "spectral:collision-probability=average", "spectral:collision-probability=history-max",
+        "spectral:rate-scale=0.7", "spectral-decomposition:collision-probability=max",
+        "spectral-decomposition:collision-probability=average",
+        "spectral-decomposition:collision-probability=history-max,control=1.3",
+        "spectral-decomposition:control=1.3,rate-scale=0.7",
+        "hero-wavelength:selection=throughput-albedo"}) {
+    variants.emplace_back(variant);
+  }
+  return variants;
+}
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const char* tracker : {"delta", "weighted-delta", "weighted-delta:rate-scale=0.7",
-                              "weighted-delta:rate-scale=2"}) {
+  for (const std::string& tracker : tracker_variants()) {
     for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
       for (const EmissionTally emission : {EmissionTally::kCollision, EmissionTally::kAnalog}) {
         cases.push_back({tracker, absorption, emission});
@@ -82,36 +118,51 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-TEST(FixtureA, EveryTrackerReproducesTheRadiance) {
-  const std::vector<Case> cases = all_cases();
-  const double threshold = family_wise_threshold(1e-3, cases.size() * 3);
-  for (const Case& test : cases) {
-    for (int channel = 0; channel < 3; ++channel) {
-      WalkStatistics statistics;
-      const RunningStatistics result = estimate_radiance(fixture(), settings_for(test, Simd::kBest),
-                                                         channel, paths_for(test), statistics);
-      const std::string name =
-          std::string(test.tracker) + ", channel " + std::to_string(channel) +
-          (test.absorption == Absorption::kAnalog ? ", analog absorption"
-                                                  : ", weighted absorption") +
-          (test.emission == EmissionTally::kAnalog ? ", analog emission" : ", collision emission");
-      EXPECT_TRUE(check_mean(name, result, FixtureA::kRadiance[channel],
-                             {.z = threshold, .absolute = 2e-6, .largest_relative_error = 0.002}));
-      EXPECT_EQ(statistics.bound_violations, 0U) << name;
-      EXPECT_EQ(statistics.tentative_collisions,
-                statistics.null_collisions + statistics.real_collisions);
+std::string name_of(const Case& test) {
+  return test.tracker +
+         (test.absorption == Absorption::kAnalog ? ", analog absorption"
+                                                 : ", weighted absorption") +
+         (test.emission == EmissionTally::kAnalog ? ", analog emission" : ", collision emission");
+}
+
+class FixtureATracker : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(FixtureATracker, ReproducesTheRadiance) {
+  const double threshold = family_wise_threshold(1e-3, all_cases().size() * 3);
+  for (const Case& test : all_cases()) {
+    if (test.tracker != GetParam()) continue;
+    const std::string name = name_of(test);
+    const FixtureResult result =
+        estimate_radiance(fixture(), settings_for(test, Simd::kBest), paths_for(test));
+    for (int channel = 0; channel < kChannels; ++channel) {
+      EXPECT_TRUE(check_mean(name + ", channel " + std::to_string(channel),
+                             result.radiance[channel], FixtureA::kRadiance[channel],
+                             {.z = threshold, .absolute = 2e-6, .largest_relative_error = 0.003}));
     }
+    EXPECT_EQ(result.walk.bound_violations, 0U) << name;
+    EXPECT_EQ(result.walk.tentative_collisions,
+              result.walk.null_collisions + result.walk.real_collisions);
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(All, FixtureATracker, ::testing::ValuesIn(tracker_variants()),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           for (char& c : name) {
+                             if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+                           }
+                           return name;
+                         });
+
 TEST(FixtureA, EveryTargetAgrees) {
-  const Case test{"weighted-delta:rate-scale=0.7", Absorption::kWeighted,
-                  EmissionTally::kCollision};
-  for (const Simd simd : available_simd()) {
-    WalkStatistics statistics;
-    const RunningStatistics result =
-        estimate_radiance(fixture(), settings_for(test, simd), 1, 200'000, statistics);
-    EXPECT_TRUE(check_mean(to_string(simd), result, FixtureA::kRadiance[1], {.absolute = 2e-6}));
+  for (const char* tracker : {"weighted-delta:rate-scale=0.7", "spectral-decomposition",
+                              "hero-wavelength", "weighted-decomposition:control=1.3"}) {
+    const Case test{tracker, Absorption::kWeighted, EmissionTally::kCollision};
+    for (const Simd simd : available_simd()) {
+      const FixtureResult result = estimate_radiance(fixture(), settings_for(test, simd), 200'000);
+      EXPECT_TRUE(check_mean(std::string(tracker) + std::string(to_string(simd)),
+                             result.radiance[1], FixtureA::kRadiance[1], {.absolute = 2e-6}));
+    }
   }
 }
 
@@ -119,18 +170,18 @@ TEST(FixtureA, EveryTargetAgrees) {
 // every tracker whose weights are tame.
 TEST(FixtureA, OnePercentInAWeightIsNoticed) {
   const double threshold = family_wise_threshold(1e-3, all_cases().size() * 3);
-  for (const char* tracker : {"delta", "weighted-delta", "weighted-delta:rate-scale=2"}) {
+  for (const char* tracker : {"delta", "weighted-delta", "weighted-delta:rate-scale=2",
+                              "decomposition", "multi-volume"}) {
     const Case test{tracker, Absorption::kAnalog, EmissionTally::kCollision};
     for (int mutation = 0; mutation < 2; ++mutation) {
-      std::array<double, 2> planted = {1, 1};
+      Planted planted = {1, 1};
       planted[mutation] = 1.01;
+      const FixtureResult result =
+          estimate_radiance(fixture(), settings_for(test, Simd::kBest), paths_for(test), planted);
       double largest_z = 0;
-      for (int channel = 0; channel < 3; ++channel) {
-        WalkStatistics statistics;
-        const RunningStatistics result =
-            estimate_radiance(fixture(), settings_for(test, Simd::kBest), channel, paths_for(test),
-                              statistics, planted);
-        largest_z = std::max(largest_z, std::abs(z_score(result.mean(), result.standard_error(),
+      for (int channel = 0; channel < kChannels; ++channel) {
+        const RunningStatistics& radiance = result.radiance[channel];
+        largest_z = std::max(largest_z, std::abs(z_score(radiance.mean(), radiance.standard_error(),
                                                          FixtureA::kRadiance[channel])));
       }
       EXPECT_GT(largest_z, threshold) << tracker << ", mutation " << mutation;
@@ -139,25 +190,38 @@ TEST(FixtureA, OnePercentInAWeightIsNoticed) {
 }
 
 TEST(FixtureA, EveryEstimatorReproducesTheTransmittance) {
-  const std::vector<std::string> methods = {"delta", "ratio", "ratio:roulette=0",
-                                            "ratio:rate-scale=0.7", "ratio:rate-scale=3"};
-  const double threshold = family_wise_threshold(1e-3, methods.size() * 3);
+  std::vector<std::string> methods = {
+      "ratio:roulette=0",          "ratio:rate-scale=0.7",          "ratio:rate-scale=3",
+      "residual-ratio:roulette=0", "residual-ratio:rate-scale=0.7", "next-flight:roulette=0",
+      "next-flight:rate-scale=0.7"};
+  for (const MethodInfo& info : transmittance_infos()) methods.emplace_back(info.name);
+  const double threshold = family_wise_threshold(1e-3, methods.size() * 6);
   for (const std::string& method : methods) {
-    for (int channel = 0; channel < 3; ++channel) {
-      WalkSettings settings = settings_for({"delta", Absorption::kAnalog, {}}, Simd::kBest);
+    for (const char* tracker : {"delta", "spectral"}) {  // one channel, and all of one path
+      WalkSettings settings = settings_for({tracker, Absorption::kAnalog, {}}, Simd::kBest);
       settings.transmittance = method;
-      const Walker walker(fixture(), settings, channel);
-      RunningStatistics result;
-      WalkStatistics statistics;
-      FlightStream flights;
-      for (std::size_t done = 0; done < 1'000'000; done += kBatch) {
-        walker.transmittance(
-            repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, kBatch, static_cast<uint32_t>(done)),
-            flights, statistics);
-        for (std::size_t i = 0; i < kBatch; ++i) result.add(flights.weight[0][i]);
+      const bool shared = shares_paths(fixture(), settings);
+      for (int turn = 0; turn < (shared ? 1 : kChannels); ++turn) {
+        const Walker walker(fixture(), settings, shared ? Walker::kAllChannels : turn);
+        ASSERT_EQ(walker.transmittance_channels(), shared ? kChannels : 1);
+        std::array<RunningStatistics, kChannels> result;
+        WalkStatistics statistics;
+        FlightStream flights;
+        for (std::size_t done = 0; done < 600'000; done += kBatch) {
+          walker.transmittance(
+              repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, kBatch, static_cast<uint32_t>(done)),
+              flights, statistics);
+          for (int slot = 0; slot < walker.transmittance_channels(); ++slot) {
+            for (std::size_t i = 0; i < kBatch; ++i) result[slot].add(flights.weight[slot][i]);
+          }
+        }
+        for (int slot = 0; slot < walker.transmittance_channels(); ++slot) {
+          const int channel = shared ? slot : turn;
+          EXPECT_TRUE(check_mean(method + ", " + tracker, result[slot],
+                                 std::exp(-FixtureA::kThickness[channel]),
+                                 {.z = threshold, .absolute = 1e-7}));
+        }
       }
-      EXPECT_TRUE(check_mean(method, result, std::exp(-FixtureA::kThickness[channel]),
-                             {.z = threshold, .absolute = 1e-7}));
     }
   }
 }

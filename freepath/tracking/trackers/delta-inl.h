@@ -7,7 +7,7 @@
 #define FREEPATH_TRACKING_DELTA_INL_H_
 #endif
 
-#include "freepath/tracking/collision-inl.h"
+#include "freepath/tracking/analog_collision-inl.h"
 #include "freepath/tracking/method.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -15,7 +15,7 @@ namespace freepath::HWY_NAMESPACE {
 
 /// P_e = mu_e/rate [Woodcock65]: real collisions happen with their own probability, and the weight
 /// of a null collision is exactly 1. Channels that share one extinction share the path.
-struct Delta {
+struct Delta : MethodTraits {
   static constexpr MethodInfo kInfo = {"delta",
                                        "Woodcock's tracking: real collisions by rejection",
                                        "",
@@ -33,50 +33,10 @@ struct Delta {
   template <int N, class Coefficients>
   HWY_INLINE void collide(const WalkModes& modes, const Coefficients& sigma,
                           Collision<N>& c) const {
-    const VecF absorb = channel_mean<N>(sigma.sigma_a);
-    const VecF scatter = channel_mean<N>(sigma.sigma_s);
-    const VecF real = hn::Add(absorb, scatter);
-    const bool weighted = modes.absorption == Absorption::kWeighted;
-    const VecF chosen = hn::Mul(c.uniform, c.rate);
-    const MaskF collided = hn::Lt(chosen, real);
-    c.absorb = weighted ? no_lanes() : hn::Lt(chosen, absorb);
-    c.scatter = hn::AndNot(c.absorb, collided);
-    const VecF scatter_begin = weighted ? hn::Zero(kFloat) : absorb;
-    const VecF scatter_share = weighted ? real : scatter;
-    c.scatter_uniform = divide_or_zero(hn::Sub(chosen, scatter_begin), scatter_share);
-    if (modes.emits) add_emission<N>(modes, sigma, collided, c);
-    if (N == 1 && !weighted) return;  // every weight is 1
-    const VecF per_share = hn::Div(
-        set(1.0F),
-        hn::IfThenElse(c.absorb, absorb, hn::IfThenElse(c.scatter, scatter_share, set(1.0F))));
-    for (int channel = 0; channel < N; ++channel) {
-      const VecF coefficient =
-          hn::IfThenElse(c.absorb, sigma.sigma_a[channel], sigma.sigma_s[channel]);
-      assign(c.weight[channel], collided,
-             hn::Mul(c.weight[channel], hn::Mul(coefficient, per_share)));
-    }
+    collide_by_delta<N>(modes, sigma, c);
   }
 
   static constexpr bool kNeedsBound = true;
-
- private:
-  template <int N, class Coefficients>
-  HWY_INLINE void add_emission(const WalkModes& modes, const Coefficients& sigma, MaskF collided,
-                               Collision<N>& c) const {
-    VecF share = hn::Div(set(1.0F), c.rate);
-    if (modes.emission == EmissionTally::kAnalog) {
-      const MaskF counted = emission_event<N>(modes, c, collided);
-      const VecF real =
-          hn::Add(channel_mean<N>(sigma.sigma_a), modes.absorption == Absorption::kWeighted
-                                                      ? channel_mean<N>(sigma.sigma_s)
-                                                      : hn::Zero(kFloat));
-      share = hn::IfThenElseZero(counted, divide_or_zero(set(1.0F), real));
-    }
-    for (int channel = 0; channel < N; ++channel) {
-      c.emitted[channel] = hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share,
-                                      c.emitted[channel]);
-    }
-  }
 };
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -7,15 +7,15 @@
 #define FREEPATH_TRACKING_RATIO_INL_H_
 #endif
 
-#include "freepath/tracking/collision-inl.h"
 #include "freepath/tracking/method.h"
+#include "freepath/tracking/roulette-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
 /// The product of mu_n/rate over all tentative collisions [Novak14, Eq. 14]. Once the product is
 /// small, Russian roulette ends rays whose rest would cost more than it is worth.
-struct Ratio {
+struct Ratio : MethodTraits {
   static constexpr MethodOption kOptions[] = {
       {"rate-scale", 1.0F, 1e-3F, 1e3F,
        "rate of tentative collisions, as a multiple of the majorant"},
@@ -25,43 +25,28 @@ struct Ratio {
                                        "",
                                        "always; below a rate scale of 1 estimates may be negative",
                                        "[Novak14, Eq. 14]",
-                                       kOptions};
+                                       kOptions,
+                                       /*chromatic=*/true};
 
   explicit Ratio(std::span<const float> options) : rate_scale(options[0]), roulette(options[1]) {}
 
   template <class Bounds>
   HWY_INLINE VecF rate(const Bounds& bounds) const {
-    VecF majorant = bounds.majorant[0];
-    for (size_t channel = 1; channel < std::size(bounds.majorant); ++channel) {
-      majorant = hn::Max(majorant, bounds.majorant[channel]);
-    }
-    return hn::Mul(majorant, set(rate_scale));
+    return hn::Mul(channel_max(bounds.majorant), set(rate_scale));
   }
 
   template <int N, class Coefficients>
   HWY_INLINE void collide(const WalkModes& /*modes*/, const Coefficients& sigma,
                           Collision<N>& c) const {
     const VecF per_rate = hn::Div(set(1.0F), c.rate);
-    VecF largest = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
       const VecF sigma_t = hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]);
       const VecF ratio = hn::Mul(hn::Sub(c.rate, sigma_t), per_rate);
       c.weight[channel] = hn::Mul(c.weight[channel], ratio);
-      largest = hn::Max(largest, hn::Abs(c.weight[channel]));
     }
-    const MaskF played = hn::Lt(largest, set(roulette));
-    const VecF survival = hn::Mul(largest, set(roulette > 0 ? 1.0F / roulette : 0.0F));
-    const MaskF survives = hn::Lt(c.uniform, survival);
-    c.absorb = hn::Or(hn::AndNot(survives, played), hn::Eq(largest, hn::Zero(kFloat)));
-    const VecF gain =
-        hn::IfThenElse(c.absorb, hn::Zero(kFloat),
-                       hn::IfThenElse(played, divide_or_zero(set(1.0F), survival), set(1.0F)));
-    for (int channel = 0; channel < N; ++channel) {
-      c.weight[channel] = hn::Mul(c.weight[channel], gain);
-    }
+    play_roulette<N>(roulette, c);
   }
 
-  static constexpr bool kNeedsBound = false;
   float rate_scale;
   float roulette;
 };

@@ -1,0 +1,179 @@
+// The densities of a medium at points, in lanes. A look-up has three stages, so that a walk can keep
+// several groups of lanes in flight and hide the latency of memory: aim (which voxel?), fetch
+// (which brick?), density (its value).
+
+#if defined(FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_
+#undef FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_
+#else
+#define FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_
+#endif
+
+#include "freepath/base/lanes-inl.h"
+#include "freepath/media/medium_view.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace freepath::HWY_NAMESPACE {
+
+class FieldLookup {
+ public:
+  /// A look-up on its way, one row a lane.
+  struct State {
+    HWY_ALIGN_MAX int32_t voxel[3][kLanes];   ///< Base voxel, from the first of the index.
+    HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
+    HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
+    HWY_ALIGN_MAX int32_t address[Medium::kMaxComponents][kLanes];  ///< Voxel in the array.
+  };
+
+  explicit FieldLookup(const MediumView& medium)
+      : medium_(medium), size_(static_cast<float>(medium.cell_size)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      last_voxel_[axis] = static_cast<float>(medium.brick_counts[axis] * BrickMap::kBrickSize - 2);
+    }
+  }
+
+  /// Stage 1: the voxel to read at a point [walk space]; the random words choose among the eight
+  /// neighbours under stochastic interpolation. One tap serves all components.
+  HWY_INLINE void aim(const VecF (&point)[3], MaskF lanes, VecU bits0, VecU bits1,
+                      State& state) const {
+    VecU random[3];
+    random[0] = hn::ShiftRight<11>(bits0);
+    random[1] = hn::ShiftRight<11>(bits1);
+    random[2] = hn::Or(hn::ShiftLeft<10>(hn::And(bits0, hn::Set(kUint, 0x7FF))),
+                       hn::And(bits1, hn::Set(kUint, 0x3FF)));
+    VecI voxel[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      VecF place = hn::Mul(point[axis], set(size_));
+      if (medium_.interpolation != Interpolation::kNearest) place = hn::Sub(place, set(0.5F));
+      place = hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last_voxel_[axis]));
+      const VecF base = hn::Floor(place);
+      voxel[axis] = small_to_int(base);
+      const VecF fraction = hn::Sub(place, base);
+      if (medium_.interpolation == Interpolation::kStochastic) {
+        // 21 bits an axis, in the middle of their interval so that rounding favours no side.
+        const VecF u =
+            hn::Mul(hn::Add(hn::ConvertTo(kFloat, hn::BitCast(kInt, random[axis])), set(0.5F)),
+                    set(0x1p-21F));
+        const VecI next = hn::VecFromMask(kInt, int_mask(hn::Lt(u, fraction)));
+        voxel[axis] = hn::Sub(voxel[axis], next);  // a true lane is -1
+      } else if (medium_.interpolation == Interpolation::kTrilinear) {
+        hn::Store(fraction, kFloat, state.fraction[axis]);
+      }
+      voxel[axis] = hn::IfThenElseZero(int_mask(lanes), voxel[axis]);
+      hn::Store(voxel[axis], kInt, state.voxel[axis]);
+    }
+    const VecI entry = brick_entry(voxel);
+    hn::Store(entry, kInt, state.entry);
+  }
+
+  /// Asks for the index entries of the voxels aimed at.
+  HWY_INLINE void prefetch_index(const State& state) const {
+    for (int k = 0; k < medium_.component_count; ++k) {
+      prefetch_lanes(medium_.components[k].index, state.entry);
+    }
+  }
+  /// The same for one component a lane.
+  HWY_INLINE void prefetch_index(const State& state, const int32_t (&component)[kLanes]) const {
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      hwy::Prefetch(medium_.components[component[lane]].index + state.entry[lane]);
+    }
+  }
+
+  /// Stage 2: the brick of that voxel.
+  HWY_INLINE void fetch(State& state) const {
+    const VecI within = voxel_in_brick(state);
+    const VecI entry = hn::Load(kInt, state.entry);
+    for (int k = 0; k < medium_.component_count; ++k) {
+      hn::Store(voxel_address(k, entry, within), kInt, state.address[k]);
+      prefetch_lanes(medium_.components[k].voxels, state.address[k]);
+    }
+  }
+  /// The same for one component a lane; the other components' bricks stay untouched.
+  HWY_INLINE void fetch(State& state, const int32_t (&component)[kLanes]) const {
+    const VecI within = voxel_in_brick(state);
+    const VecI entry = hn::Load(kInt, state.entry);
+    const VecI wanted = hn::Load(kInt, component);
+    for (int k = 0; k < medium_.component_count; ++k) {
+      const MaskI mine = hn::Eq(wanted, hn::Set(kInt, k));
+      const VecI address = voxel_address(k, hn::IfThenElseZero(mine, entry), within);
+      hn::Store(hn::IfThenElseZero(mine, address), kInt, state.address[k]);
+    }
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      const int32_t k = component[lane];
+      hwy::Prefetch(medium_.components[k].voxels + state.address[k][lane]);
+    }
+  }
+
+  /// Stage 3: the density of one component.
+  HWY_INLINE VecF density(int k, const State& state) const {
+    if (medium_.interpolation == Interpolation::kTrilinear) {
+      return trilinear(k, state, hn::Eq(hn::Zero(kInt), hn::Zero(kInt)));
+    }
+    return hn::GatherIndex(kFloat, medium_.components[k].voxels, hn::Load(kInt, state.address[k]));
+  }
+  /// The same in the lanes of a mask, 0 in the others.
+  HWY_INLINE VecF density(int k, const State& state, MaskI lanes) const {
+    return hn::IfThenElseZero(float_mask(lanes), medium_.interpolation == Interpolation::kTrilinear
+                                                     ? trilinear(k, state, lanes)
+                                                     : density(k, state));
+  }
+
+ private:
+  HWY_INLINE VecI brick_entry(const VecI (&voxel)[3]) const {
+    const VecI row =
+        hn::Add(hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, medium_.brick_counts[1])),
+                hn::ShiftRight<3>(voxel[1]));
+    return hn::Add(hn::Mul(row, hn::Set(kInt, medium_.brick_counts[2])),
+                   hn::ShiftRight<3>(voxel[2]));
+  }
+
+  static HWY_INLINE VecI voxel_in_brick(const State& state) {
+    const VecI voxel[3] = {hn::Load(kInt, state.voxel[0]), hn::Load(kInt, state.voxel[1]),
+                           hn::Load(kInt, state.voxel[2])};
+    return voxel_in_brick(voxel);
+  }
+  static HWY_INLINE VecI voxel_in_brick(const VecI (&voxel)[3]) {
+    const VecI low = hn::Set(kInt, 7);
+    return hn::Or(
+        hn::Or(hn::ShiftLeft<6>(hn::And(voxel[0], low)), hn::ShiftLeft<3>(hn::And(voxel[1], low))),
+        hn::And(voxel[2], low));
+  }
+
+  HWY_INLINE VecI voxel_address(int k, VecI entry, VecI within) const {
+    const auto* index = reinterpret_cast<const int32_t*>(medium_.components[k].index);
+    return hn::Or(hn::ShiftLeft<9>(hn::GatherIndex(kInt, index, entry)), within);
+  }
+
+  HWY_INLINE VecF trilinear(int k, const State& state, MaskI lanes) const {
+    VecI voxel[2][3];
+    VecF weight[2][3];
+    for (int axis = 0; axis < 3; ++axis) {
+      voxel[0][axis] = hn::IfThenElseZero(lanes, hn::Load(kInt, state.voxel[axis]));
+      voxel[1][axis] = hn::Add(voxel[0][axis], hn::Set(kInt, 1));
+      weight[1][axis] = hn::Load(kFloat, state.fraction[axis]);
+      weight[0][axis] = hn::Sub(set(1.0F), weight[1][axis]);
+    }
+    VecF sum = hn::Zero(kFloat);
+    for (int x = 0; x < 2; ++x) {
+      for (int y = 0; y < 2; ++y) {
+        const VecF weight_xy = hn::Mul(weight[x][0], weight[y][1]);
+        for (int z = 0; z < 2; ++z) {
+          const VecI corner[3] = {voxel[x][0], voxel[y][1], voxel[z][2]};
+          const VecI address = voxel_address(k, brick_entry(corner), voxel_in_brick(corner));
+          const VecF value = hn::GatherIndex(kFloat, medium_.components[k].voxels, address);
+          sum = hn::MulAdd(hn::Mul(weight_xy, weight[z][2]), value, sum);
+        }
+      }
+    }
+    return sum;
+  }
+
+  MediumView medium_;
+  float size_;
+  float last_voxel_[3];
+};
+
+}  // namespace freepath::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_
