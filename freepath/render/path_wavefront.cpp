@@ -28,6 +28,13 @@ float largest_magnitude(const Spectrum& s) {
   return std::isnan(s.x + s.y + s.z) ? std::numeric_limits<float>::quiet_NaN() : largest;
 }
 
+/// What a flight holds of each channel; one channel stands for all.
+Spectrum channels_of(const std::array<std::vector<float>, kChannels>& values, std::size_t slot,
+                     int channels) {
+  if (channels == 1) return Spectrum(values[0][slot]);
+  return {values[0][slot], values[1][slot], values[2][slot]};
+}
+
 void set_ray(RayStream& rays, std::size_t slot, const Vec3f& origin, const Vec3f& direction) {
   for (int axis = 0; axis < 3; ++axis) {
     rays.origin[axis][slot] = origin[axis];
@@ -86,6 +93,7 @@ void PathWavefront::trace_channel(const PathJob& job, int channel) {
     while (active < setup_.slots && next < total) start_path(job, next++, active++, channel);
     if (active == 0) break;
     rays_.resize(active);
+    bring_weights(active);
     walker_->free_paths(rays_, flights_, statistics_);
 
     // Paths that go on close ranks; those that have ended owe nothing to the shadow rays.
@@ -132,6 +140,7 @@ void PathWavefront::start_path(const PathJob& job, std::size_t number, std::size
   Path& path = paths_in_flight_[slot];
   path = {};
   path.throughput = Spectrum(1.0F);
+  path.density = Spectrum(1.0F);
   if (channel >= 0) {
     path.throughput = Spectrum(0.0F);
     path.throughput[channel] = 1.0F;
@@ -141,20 +150,37 @@ void PathWavefront::start_path(const PathJob& job, std::size_t number, std::size
   path.result = static_cast<uint32_t>(number);
 }
 
-Spectrum PathWavefront::flight_values(const std::array<std::vector<float>, kChannels>& values,
-                                      std::size_t slot) const {
-  if (walker_->channels() == 1) return Spectrum(values[0][slot]);
-  return {values[0][slot], values[1][slot], values[2][slot]};
+void PathWavefront::bring_weights(std::size_t active) {
+  rays_.set_weighted(walker_->channels() > 1);
+  if (!rays_.weighted()) return;
+  for (std::size_t slot = 0; slot < active; ++slot) {
+    const Path& path = paths_in_flight_[slot];
+    for (int channel = 0; channel < kChannels; ++channel) {
+      rays_.weight[channel][slot] = path.throughput[channel];
+      rays_.density[channel][slot] = path.density[channel];
+    }
+  }
+}
+
+void PathWavefront::take_weights(Path& path, std::size_t slot) {
+  const int channels = walker_->channels();
+  const Spectrum weight = channels_of(flights_.weight, slot, channels);
+  const Spectrum emitted = channels_of(flights_.emitted, slot, channels);
+  if (rays_.weighted()) {
+    path.throughput = weight;
+    path.density = channels_of(flights_.density, slot, channels);
+  }
+  if (setup_.medium->emits()) {
+    path.radiance += rays_.weighted() ? emitted : path.throughput * emitted;
+  }
+  if (!rays_.weighted()) path.throughput *= weight;
 }
 
 bool PathWavefront::advance(std::size_t slot) {
   Path& path = paths_in_flight_[slot];
   path.lookups += flights_.lookups[slot];
-  if (setup_.medium->emits()) {
-    path.radiance += path.throughput * flight_values(flights_.emitted, slot);
-  }
+  take_weights(path, slot);
   if (path.bounce == 0) record_first_event(path, slot);
-  path.throughput *= flight_values(flights_.weight, slot);
   if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
     path.radiance = Spectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
     return false;
@@ -228,7 +254,7 @@ void PathWavefront::sample_light(const Path& path, std::size_t slot, const Vec3f
 }
 
 void PathWavefront::record_first_event(Path& path, std::size_t slot) const {
-  const float weight = mean(flight_values(flights_.weight, slot));
+  const float weight = mean(channels_of(flights_.weight, slot, walker_->channels()));
   if (flights_.event[slot] == Event::kEscape) {
     path.alpha = 1 - weight;
     return;
@@ -275,7 +301,8 @@ void PathWavefront::trace_shadows() {
   walker_->transmittance(shadow_rays_, shadow_flights_, statistics_);
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     Path& path = paths_in_flight_[shadows_[i].slot];
-    path.radiance += shadows_[i].radiance * shadow_flights_.weight[0][i];
+    path.radiance += shadows_[i].radiance *
+                     channels_of(shadow_flights_.weight, i, walker_->transmittance_channels());
     path.lookups += shadow_flights_.lookups[i];
   }
   shadow_rays_.resize(setup_.slots);

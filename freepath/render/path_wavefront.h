@@ -59,6 +59,7 @@ class PathWavefront {
   /// A path in flight. Its ray stands in the same slot of rays_.
   struct Path {
     Spectrum throughput;
+    Spectrum density;  ///< FlightStream::density of the flights so far.
     Spectrum radiance;
     float phase_pdf;  ///< Density with which the direction was drawn [1/sr].
     uint32_t bounce;  ///< Scatterings so far.
@@ -79,13 +80,15 @@ class PathWavefront {
   void start_path(const PathJob& job, std::size_t number, std::size_t slot, int channel);
   /// Takes in what became of a path's flight; false if the path has ended.
   bool advance(std::size_t slot);
+  /// Tells spectral trackers the throughputs of the paths that they are to continue.
+  void bring_weights(std::size_t active);
+  /// Adds what a flight has collected, and weights the path with it.
+  void take_weights(Path& path, std::size_t slot);
   void escape(Path& path, const Vec3f& direction) const;
   bool scatter(Path& path, std::size_t slot);
   void sample_light(const Path& path, std::size_t slot, const Vec3f& position,
                     const Vec3f& direction, const HenyeyGreenstein& phase, RandomStream& random);
   void record_first_event(Path& path, std::size_t slot) const;
-  Spectrum flight_values(const std::array<std::vector<float>, kChannels>& values,
-                         std::size_t slot) const;
   void finish(const Path& path, int channel);
   void trace_shadows();
 

@@ -40,7 +40,7 @@ PathSetup make_setup(const Medium& medium, const Camera& camera, const Lights& l
   setup.seed = settings.walk.seed;
   setup.max_scatterings = settings.max_scatterings;
   setup.slots = std::max<std::size_t>(settings.batch, 1);
-  if (medium.has_grey_extinction()) {
+  if (shares_paths(medium, settings.walk)) {
     setup.walkers.emplace_back(medium, settings.walk);
   } else {
     for (int channel = 0; channel < kChannels; ++channel) {
