@@ -20,8 +20,11 @@ namespace {
 constexpr const char* kFooter =
     R"(Renders the density of a volume file (.vdb, .nvdb), without bias and without a limit to the
 number of scatterings. Several -o write the same picture several times; an .exr holds all channels,
-a .png the colour. Ctrl-C ends after the batches at work, still writes, says how many samples
-there are, and exits with status 0; a second Ctrl-C ends at once.
+a .png the colour. Ctrl-C drops the paths under way, writes what there is, says how many samples
+that are, and exits with status 0; a second Ctrl-C ends at once. Where Ctrl-C or the end of --time
+come before every pixel has its first sample, that is waited for only if it will not take long
+(a second after Ctrl-C; as much time again and a second after --time): pixels without a sample are
+black with alpha 0, and counted in a warning, in --stats and in the .exr.
 
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
 Methods take options after their name: weighted-delta:rate-scale=0.7
@@ -180,6 +183,15 @@ RenderSettings read_settings(const Options& options) {
   return settings;
 }
 
+/// Refuses to write a picture of nothing, perhaps over one of something.
+void check_not_empty(const RenderResult& result) {
+  if (result.most_samples > 0) return;
+  fail("{} after {:.1f} s, before any pixel had a sample: nothing is written; {}",
+       result.interrupted ? "interrupted" : "the time was up", result.seconds,
+       result.interrupted ? "wait longer, or choose a smaller --size"
+                          : "give more --time, or choose a smaller --size or a thinner volume");
+}
+
 void run(const Options& options) {
   // All that can be wrong with the options is said before the first second of work.
   for (const std::string& output : options.outputs) check_writable(output);
@@ -213,6 +225,7 @@ void run(const Options& options) {
         return !stop.requested();
       });
   bar.finish();
+  check_not_empty(result);
   report.seconds_render = result.seconds;
   report.settings = settings;
   report.threads = settings.threads;
@@ -236,8 +249,8 @@ void add_picture_options(CLI::App& command, Options& o) {
       ->group("Picture");
   command
       .add_option("--time", o.time_limit,
-                  "Seconds to render, but at least one sample per pixel; with --spp, whichever "
-                  "ends first")
+                  "Seconds to render; the first sample of every pixel may take twice that and a "
+                  "second; with --spp, whichever ends first")
       ->check(kFiniteNumber & CLI::PositiveNumber)
       ->group("Picture");
   command.add_option("--exposure", o.exposure, "Exposure of a .png [stops]")

@@ -50,6 +50,8 @@ void add_metadata(Image& image, const RenderResult& result, const RenderReport& 
       {"freepath:volume", std::filesystem::path(report.volume).filename().string()},
       {"freepath:seed", integer(walk.seed)},
       {"freepath:samples", integer(result.samples)},
+      {"freepath:most_samples", integer(result.most_samples)},
+      {"freepath:pixels_without_samples", integer(result.pixels_without_samples)},
       {"freepath:tracker", walk.tracker},
       {"freepath:transmittance", walk.transmittance},
       {"freepath:seconds", result.seconds},
@@ -69,6 +71,8 @@ nlohmann::json statistics_json(const RenderResult& result, const RenderReport& r
   const WalkStatistics& counts = result.statistics;
   return {{"paths", result.paths},
           {"samples", result.samples},
+          {"most_samples", result.most_samples},
+          {"pixels_without_samples", result.pixels_without_samples},
           {"tentative_collisions", counts.tentative_collisions},
           {"null_collisions", counts.null_collisions},
           {"real_collisions", counts.real_collisions},
@@ -156,13 +160,13 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
                    const RenderReport& report) {
   const WalkStatistics& counts = result.statistics;
   const double paths = static_cast<double>(std::max<uint64_t>(result.paths, 1));
-  if (result.interrupted)
-    fmt::print(stderr, "interrupted after {} samples per pixel\n", result.samples);
-  fmt::print(stderr,
-             "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
-             result.samples,
-             clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
-             report.seconds_load, report.seconds_build, report.seconds_render);
+  std::string samples = fmt::format("{}", result.samples);
+  if (result.most_samples > result.samples) samples += fmt::format(" to {}", result.most_samples);
+  if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", samples);
+  fmt::print(
+      stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
+      samples, clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
+      report.seconds_load, report.seconds_build, report.seconds_render);
   fmt::print(stderr,
              "{}: {} paths, a path {:.2f} lookups, {:.2f} real and {:.2f} null collisions, {:.2f} "
              "super-voxel steps; largest weight {:.4g}, {} negative weights, {} bound violations\n",
@@ -177,6 +181,14 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
                "freepath: warning: the weights of {} paths left the range of float and count as 0; "
                "do not trust this picture, take a larger rate-scale or another tracker\n",
                result.overflows);
+  }
+  if (result.pixels_without_samples > 0) {
+    fmt::print(
+        stderr,
+        "freepath: warning: {} of {} pixels have no sample, for want of time; they are black "
+        "with alpha 0\n",
+        result.pixels_without_samples,
+        static_cast<std::size_t>(result.film.width()) * result.film.height());
   }
   for (const std::string& file : files) fmt::print(stderr, "wrote {}\n", file);
 }

@@ -58,6 +58,16 @@ void Film::add(std::size_t pixel, const PathSample& sample) {
   ++sums.samples;
 }
 
+Film::SampleCounts Film::sample_counts() const {
+  SampleCounts counts{pixels_[0].samples, 0, 0};
+  for (const Pixel& pixel : pixels_) {
+    counts.fewest = std::min(counts.fewest, pixel.samples);
+    counts.most = std::max(counts.most, pixel.samples);
+    if (pixel.samples == 0) ++counts.pixels_without;
+  }
+  return counts;
+}
+
 Film::NonFinite Film::non_finite_samples() const {
   NonFinite result;
   for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {

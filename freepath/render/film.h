@@ -42,6 +42,13 @@ class Film {
 
   /// Samples of a pixel that were added.
   uint32_t samples(std::size_t pixel) const { return pixels_[pixel].samples; }
+  /// How many samples the pixels have.
+  struct SampleCounts {
+    uint32_t fewest = 0;
+    uint32_t most = 0;
+    std::size_t pixels_without = 0;  ///< Pixels that have none.
+  };
+  SampleCounts sample_counts() const;
   /// Samples that were not finite, and the first pixel that had one.
   struct NonFinite {
     uint64_t samples = 0;

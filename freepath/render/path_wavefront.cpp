@@ -67,34 +67,36 @@ PathWavefront::PathWavefront(const PathSetup& setup) : setup_(setup) {
   shadows_.reserve(setup.slots);
 }
 
-void PathWavefront::trace(const PathJob& job, Film& film) {
+bool PathWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples, PathSample{});
-  if (setup_.walkers.size() == 1) {
-    walker_ = &setup_.walkers[0];
-    trace_channel(job, Walker::kAllChannels);
-  } else {
-    for (int channel = 0; channel < kChannels; ++channel) {
-      walker_ = &setup_.walkers[channel];
-      trace_channel(job, channel);
-    }
+  job_counts_ = {};
+  const bool all_channels = setup_.walkers.size() == 1;
+  for (std::size_t i = 0; i < setup_.walkers.size(); ++i) {
+    walker_ = &setup_.walkers[i];
+    const int channel = all_channels ? Walker::kAllChannels : static_cast<int>(i);
+    if (!trace_channel(job, channel, stop)) return false;
   }
   for (std::size_t i = 0; i < results_.size(); ++i) {
     film.add(job.first_pixel + i / job.samples, results_[i]);
   }
+  counts_.merge(job_counts_);
+  return true;
 }
 
-void PathWavefront::trace_channel(const PathJob& job, int channel) {
+bool PathWavefront::trace_channel(const PathJob& job, int channel,
+                                  const std::function<bool()>& stop) {
   const std::size_t total = job.pixels * job.samples;
   std::size_t next = 0;
   std::size_t active = 0;
-  paths_ += total;
+  job_counts_.paths += total;
   while (true) {
     rays_.resize(setup_.slots);
     while (active < setup_.slots && next < total) start_path(job, next++, active++, channel);
-    if (active == 0) break;
+    if (active == 0) return true;
+    if (stop && stop()) return false;
     rays_.resize(active);
     bring_weights(active);
-    walker_->free_paths(rays_, flights_, statistics_);
+    walker_->free_paths(rays_, flights_, job_counts_.walk);
 
     // Paths that go on close ranks; those that have ended owe nothing to the shadow rays.
     shadows_.clear();
@@ -273,7 +275,7 @@ void PathWavefront::finish(const Path& path, int channel) {
   sample.lookups += static_cast<float>(path.lookups);
   if (!is_finite(path.radiance) || !std::isfinite(path.alpha) ||
       !std::isfinite(path.depth_weight)) {
-    ++overflows_;
+    ++job_counts_.overflows;
     return;
   }
   sample.radiance += path.radiance;
@@ -298,7 +300,7 @@ void PathWavefront::finish(const Path& path, int channel) {
 void PathWavefront::trace_shadows() {
   if (shadows_.empty()) return;
   shadow_rays_.resize(shadows_.size());
-  walker_->transmittance(shadow_rays_, shadow_flights_, statistics_);
+  walker_->transmittance(shadow_rays_, shadow_flights_, job_counts_.walk);
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     Path& path = paths_in_flight_[shadows_[i].slot];
     path.radiance += shadows_[i].radiance *

@@ -2,6 +2,7 @@
 /// @file A wavefront of paths: all paths of a stretch of pixels, traced together.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -47,13 +48,26 @@ class PathWavefront {
   explicit PathWavefront(const PathSetup& setup);
 
   /// Traces a job and adds its samples to the film, each pixel's in the order of their numbers.
-  void trace(const PathJob& job, Film& film);
+  /// @param stop asked before every flight of the wavefront; once it is true the job is dropped
+  ///   whole: nothing is added to the film or to the counts
+  /// @return whether the job was finished
+  bool trace(const PathJob& job, Film& film, const std::function<bool()>& stop = {});
 
-  const WalkStatistics& statistics() const { return statistics_; }
-  uint64_t paths() const { return paths_; }
-  /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
-  /// not to be trusted. Only rates that are no bound can do that.
-  uint64_t overflows() const { return overflows_; }
+  /// Counts over all jobs that were finished.
+  struct Counts {
+    WalkStatistics walk;
+    uint64_t paths = 0;
+    /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
+    /// not to be trusted. Only rates that are no bound can do that.
+    uint64_t overflows = 0;
+
+    void merge(const Counts& other) {
+      walk.merge(other.walk);
+      paths += other.paths;
+      overflows += other.overflows;
+    }
+  };
+  const Counts& counts() const { return counts_; }
 
  private:
   /// A path in flight. Its ray stands in the same slot of rays_.
@@ -76,7 +90,8 @@ class PathWavefront {
     Spectrum radiance;  ///< What arrives if nothing is in between.
   };
 
-  void trace_channel(const PathJob& job, int channel);
+  /// @return whether it came to the end
+  bool trace_channel(const PathJob& job, int channel, const std::function<bool()>& stop);
   void start_path(const PathJob& job, std::size_t number, std::size_t slot, int channel);
   /// Takes in what became of a path's flight; false if the path has ended.
   bool advance(std::size_t slot);
@@ -103,9 +118,8 @@ class PathWavefront {
   std::vector<ShadowPath> shadows_;
   std::vector<PathSample> results_;
   const Walker* walker_ = nullptr;  // of the channel at work
-  WalkStatistics statistics_;
-  uint64_t paths_ = 0;
-  uint64_t overflows_ = 0;
+  Counts job_counts_;
+  Counts counts_;
 };
 
 }  // namespace freepath

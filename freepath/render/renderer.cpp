@@ -13,6 +13,7 @@
 #include <mutex>
 
 #include "freepath/base/error.h"
+#include "freepath/render/deadline.h"
 
 namespace freepath {
 namespace {
@@ -20,8 +21,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Paths of a job: enough to fill a wavefront many times over, so that its end, where lanes idle,
-/// counts little; few enough to share a pass evenly and to stop soon when asked to.
+/// counts little; few enough to share a pass evenly.
 constexpr std::size_t kPathsPerJob = 8192;
+/// In a first pass that may run out of time, where jobs under way are lost, jobs are to take this
+/// part of the time; but not fewer paths, since lanes idle at the end of each job.
+constexpr double kHastyShareOfTime = 0.1;
+constexpr std::size_t kFewestPathsPerJob = 512;
 constexpr uint32_t kMaxSamplesPerPass = 256;
 constexpr double kSecondsPerPass = 2;
 constexpr double kSecondsBetweenReports = 0.1;
@@ -63,18 +68,21 @@ class PassRenderer {
                       std::max(settings.threads, tbb::info::default_concurrency())),
         arena_(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic),
         wavefronts_([this] { return PathWavefront(setup_); }),
-        start_(Clock::now()) {}
+        start_(Clock::now()),
+        deadline_(settings.time_limit) {}
 
   void run() {
     const bool timed = settings_.time_limit > 0;
     const uint32_t wanted = settings_.samples > 0 ? settings_.samples : UINT32_MAX;
     uint32_t samples = 1;
-    while (!stop_ && samples_done_ < wanted) {
+    while (!deadline_.stop_is_wished() && samples_done_ < wanted) {
       samples = std::min(samples, wanted - samples_done_);
       const double before = seconds_since(start_);
+      deadline_.begin_pass(before, samples_done_ == 0);
       pass(samples);
+      if (over_) break;
+      samples_done_ += samples;
       const double now = seconds_since(start_);
-      if (!stop_) samples_done_ += samples;
       if (timed && now >= settings_.time_limit) break;
       samples = next_pass(samples, (now - before) / samples, timed, now);
       if (samples == 0) break;
@@ -82,24 +90,15 @@ class PassRenderer {
     report(true);
   }
 
-  uint32_t samples_done() const { return samples_done_; }
-  bool stopped() const { return stop_; }
+  bool stop_is_wished() const { return deadline_.stop_is_wished(); }
   double seconds() const { return seconds_since(start_); }
-  uint64_t paths() { return sum_of(&PathWavefront::paths); }
-  uint64_t overflows() { return sum_of(&PathWavefront::overflows); }
-  WalkStatistics statistics() {
-    WalkStatistics sum;
-    for (const PathWavefront& wavefront : wavefronts_) sum.merge(wavefront.statistics());
+  PathWavefront::Counts counts() {
+    PathWavefront::Counts sum;
+    for (const PathWavefront& wavefront : wavefronts_) sum.merge(wavefront.counts());
     return sum;
   }
 
  private:
-  uint64_t sum_of(uint64_t (PathWavefront::*count)() const) {
-    uint64_t sum = 0;
-    for (const PathWavefront& wavefront : wavefronts_) sum += (wavefront.*count)();
-    return sum;
-  }
-
   uint32_t next_pass(uint32_t samples, double seconds_per_sample, bool timed, double now) const {
     double wanted = kSecondsPerPass / std::max(seconds_per_sample, 1e-9);
     if (timed) wanted = std::min(wanted, (settings_.time_limit - now) / seconds_per_sample);
@@ -109,23 +108,48 @@ class PassRenderer {
   }
 
   void pass(uint32_t samples) {
-    const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
-    const std::size_t pixels_per_job = std::max<std::size_t>(kPathsPerJob / samples, 1);
-    const std::size_t jobs = (pixels + pixels_per_job - 1) / pixels_per_job;
+    std::atomic<std::size_t> next_pixel = 0;
     arena_.execute([&] {
       tbb::parallel_for(
-          tbb::blocked_range<std::size_t>(0, jobs, 1),
-          [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t job = range.begin(); job < range.end() && !stop_; ++job) {
-              const std::size_t first = job * pixels_per_job;
-              const std::size_t count = std::min(pixels_per_job, pixels - first);
-              wavefronts_.local().trace({first, count, samples_done_, samples}, film_);
-              paths_done_ += static_cast<double>(count) * samples / static_cast<double>(pixels);
-              report(false);
-            }
-          },
+          tbb::blocked_range<int>(0, arena_.max_concurrency(), 1),
+          [&](const tbb::blocked_range<int>&) { work(samples, next_pixel); },
           tbb::simple_partitioner());
     });
+  }
+
+  /// One thread's part of a pass: takes the next pixels until there are none.
+  void work(uint32_t samples, std::atomic<std::size_t>& next_pixel) {
+    const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
+    PathWavefront& wavefront = wavefronts_.local();
+    const auto pass_is_over = [&] { return is_over(samples); };
+    const bool hasty = settings_.time_limit > 0 && samples_done_ == 0;
+    std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
+    while (!over_) {
+      const std::size_t wanted = std::max<std::size_t>(paths / samples, 1);
+      const std::size_t first = next_pixel.fetch_add(wanted);
+      if (first >= pixels) return;
+      const std::size_t count = std::min(wanted, pixels - first);
+      const Clock::time_point began = Clock::now();
+      if (!wavefront.trace({first, count, samples_done_, samples}, film_, pass_is_over)) return;
+      const double paths_traced = static_cast<double>(count) * samples;
+      paths_done_ += paths_traced / static_cast<double>(pixels);
+      if (hasty) paths = hasty_job_size(seconds_since(began) / paths_traced);
+    }
+  }
+
+  /// Paths of a job so that it takes a small part of the time there is.
+  std::size_t hasty_job_size(double seconds_per_path) const {
+    const double paths = kHastyShareOfTime * settings_.time_limit / seconds_per_path;
+    return static_cast<std::size_t>(
+        std::clamp(paths, double(kFewestPathsPerJob), double(kPathsPerJob)));
+  }
+
+  /// Whether a pass over so many samples has to end; asked all the time.
+  bool is_over(uint32_t samples) {
+    report(false);
+    const double done = (paths_done_ - samples_done_) / samples;
+    if (!over_ && deadline_.is_over(seconds_since(start_), done)) over_ = true;
+    return over_;
   }
 
   void report(bool last) {
@@ -139,7 +163,9 @@ class PassRenderer {
     const double now = seconds_since(start_);
     if (!last && now - reported_ < kSecondsBetweenReports) return;
     reported_ = now;
-    if (!progress_({paths_done_, double(settings_.samples), now})) stop_ = true;
+    if (!progress_({paths_done_, double(settings_.samples), now})) {
+      deadline_.wish_to_stop(now);
+    }
   }
 
   const PathSetup& setup_;
@@ -150,7 +176,8 @@ class PassRenderer {
   tbb::task_arena arena_;
   tbb::enumerable_thread_specific<PathWavefront> wavefronts_;
   Clock::time_point start_;
-  std::atomic<bool> stop_ = false;
+  Deadline deadline_;
+  std::atomic<bool> over_ = false;
   std::atomic<double> paths_done_ = 0;  // samples of each pixel, on average
   std::mutex report_mutex_;
   double reported_ = 0;
@@ -168,12 +195,16 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   const PathSetup setup = make_setup(medium, camera, lights, settings);
   PassRenderer passes(setup, settings, progress, result.film);
   passes.run();
-  result.samples = passes.samples_done();
-  result.interrupted = passes.stopped() && result.samples != settings.samples;
+  const Film::SampleCounts samples = result.film.sample_counts();
+  result.samples = samples.fewest;
+  result.most_samples = samples.most;
+  result.pixels_without_samples = samples.pixels_without;
+  result.interrupted = passes.stop_is_wished() && result.samples != settings.samples;
   result.seconds = passes.seconds();
-  result.paths = passes.paths();
-  result.overflows = passes.overflows();
-  result.statistics = passes.statistics();
+  const PathWavefront::Counts counts = passes.counts();
+  result.paths = counts.paths;
+  result.overflows = counts.overflows;
+  result.statistics = counts.walk;
   const Film::NonFinite non_finite = result.film.non_finite_samples();
   if (non_finite.samples > 0) {
     const auto width = static_cast<std::size_t>(camera.width());

@@ -11,8 +11,11 @@ namespace freepath {
 /// How much to render, and with what.
 struct RenderSettings {
   uint32_t samples = 64;  ///< Of each pixel; 0: as many as the time allows.
-  double time_limit = 0;  ///< [s] 0: none. No pass begins once it is reached.
-  int threads = 0;        ///< 0: as many as the machine has.
+  /// [s] 0: none. Passes are planned to end in time. One that doesn't is broken off: a first pass,
+  /// after which each pixel has one sample, where it would take more than twice the limit and a
+  /// second, later ones a few percent past the limit.
+  double time_limit = 0;
+  int threads = 0;  ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
   std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
   WalkSettings walk;
@@ -30,15 +33,17 @@ struct RenderResult {
   Film film;
   WalkStatistics statistics;
   uint64_t paths = 0;
-  uint32_t samples = 0;  ///< Of each pixel; where interrupted, of the pixel with the fewest.
+  /// Of the pixel with the fewest, and with the most: the same, unless a pass was broken off.
+  uint32_t samples = 0, most_samples = 0;
+  std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
   /// Paths whose weight left the range of float; with any, the picture is not to be trusted.
   uint64_t overflows = 0;
   double seconds = 0;
   bool interrupted = false;
 };
 
-/// Called now and then, by one thread at a time; false ends the rendering after the batches at
-/// work.
+/// Called now and then, by one thread at a time. False ends the rendering soon: a first pass if it
+/// isn't complete within a second, others at once.
 using ProgressFunction = std::function<bool(const RenderProgress&)>;
 
 /// Renders a medium lit from outside and from within, without a limit to the number of scatterings.
@@ -46,6 +51,11 @@ using ProgressFunction = std::function<bool(const RenderProgress&)>;
 ///
 /// A medium whose extinction is grey is traced with one path for all channels, else with one path
 /// for each channel of every sample.
+///
+/// Where a pass is broken off, jobs that are not finished are dropped whole, so that a sample is
+/// the same as in any other picture. How many samples a pixel has then depends on the time that
+/// its paths took; dropping those unfinished, rather than waiting for them, keeps the bias of the
+/// mean small [Glynn90]. A pixel without samples has no mean.
 /// @throws Error for methods that do not exist, and (an internal error) if a sample is not finite
 RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
                     const RenderSettings& settings, const ProgressFunction& progress = {});

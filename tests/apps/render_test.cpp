@@ -1,8 +1,10 @@
 // freepath render: what it writes, that it is right, and that nothing but inputs and seed matters.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -119,9 +121,10 @@ TEST_F(RenderTest, AnExrSaysHowItWasMade) {
 TEST_F(RenderTest, StatisticsAreWholeAndConsistent) {
   render("--stats stats.json --seed 11 --threads 2");
   const json stats = read_json("stats.json");
-  for (const char* key : {"paths", "tentative_collisions", "null_collisions", "real_collisions",
-                          "control_collisions", "lookups", "super_voxel_steps", "bound_violations",
-                          "negative_weights", "largest_weight", "peak_memory_bytes"}) {
+  for (const char* key :
+       {"paths", "tentative_collisions", "null_collisions", "real_collisions", "most_samples",
+        "pixels_without_samples", "control_collisions", "lookups", "super_voxel_steps",
+        "bound_violations", "negative_weights", "largest_weight", "peak_memory_bytes"}) {
     ASSERT_TRUE(stats.contains(key)) << key;
     EXPECT_TRUE(stats[key].is_number()) << key;
   }
@@ -235,6 +238,68 @@ TEST_F(RenderTest, TimeEndsIt) {
   for (const float value : read_image(path("picture.exr")).values) {
     ASSERT_TRUE(std::isfinite(value));
   }
+}
+
+/// Options under which paths that meet the ball take minutes.
+constexpr const char* kThick = " --albedo 1 --density-scale 1e5 ";
+
+TEST_F(RenderTest, TimeEndsAPictureWithoutAllItsPixelsAndSaysSo) {
+  const Outcome outcome = run(std::string("render ball.vdb -o picture.exr --stats stats.json") +
+                              kThick + "--size 300x300 --time 1 --environment 1");
+  EXPECT_EQ(outcome.status, 0) << outcome;
+  EXPECT_LT(outcome.seconds, 2 * 1 + 1 + 2);  // the limit, and slack for a slow machine
+  const json stats = read_json("stats.json");
+  const auto missing = stats["pixels_without_samples"].get<int64_t>();
+  EXPECT_GT(missing, 0);
+  EXPECT_EQ(stats["samples"], 0);
+  EXPECT_EQ(stats["most_samples"], 1);
+  EXPECT_NE(outcome.messages.find("warning: " + std::to_string(missing) +
+                                  " of 90000 pixels have no sample"),
+            std::string::npos)
+      << outcome;
+  const Image image = read_image(path("picture.exr"));
+  EXPECT_EQ(metadata(image, "freepath:pixels_without_samples"), MetadataValue(missing));
+  EXPECT_EQ(metadata(image, "freepath:samples"), MetadataValue(int64_t{0}));
+  // Every pixel that has a sample sees light.
+  const int red = find_channel(image, "R").value();
+  int64_t black = 0;
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      black += image.pixel(column, row)[red] == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(black, missing);
+}
+
+// A camera in the midst: no path ends in years.
+TEST_F(RenderTest, APictureWithoutAnySampleIsNotWritten) {
+  write_text(path("picture.exr"), "an older picture");
+  const Outcome outcome = run(std::string("render ball.vdb -o picture.exr --stats stats.json") +
+                              kThick + "--size 8x8 --time 0.5 --look-at 0,0,0,1,0,0");
+  EXPECT_EQ(outcome.status, 1) << outcome;
+  EXPECT_LT(outcome.seconds, 2 * 0.5 + 1 + 2);
+  EXPECT_NE(outcome.messages.find("--time"), std::string::npos) << outcome;
+  EXPECT_EQ(files(), (std::vector<std::string>{"ball.vdb", "picture.exr"}));
+  EXPECT_EQ(std::filesystem::file_size(path("picture.exr")), 16U);
+}
+
+TEST_F(RenderTest, CtrlCEndsPathsThatWouldTakeYears) {
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> interrupted;
+  const Outcome outcome =
+      run_in_terminal(words(std::string("render ball.vdb -o picture.exr") + kThick +
+                            "--size 8x8 --look-at 0,0,0,1,0,0"),
+                      folder_, [&](const std::string& text, int process) {
+                        if (interrupted || text.find("samples/s") == std::string::npos) return;
+                        interrupted = Clock::now();
+                        kill(process, SIGINT);
+                      });
+  ASSERT_TRUE(interrupted) << outcome;
+  // A second for the first samples, and slack for a slow machine.
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - *interrupted).count(), 1 + 2);
+  EXPECT_EQ(outcome.status, 1) << outcome;
+  EXPECT_NE(outcome.messages.find("interrupted"), std::string::npos) << outcome;
+  EXPECT_EQ(files(), (std::vector<std::string>{"ball.vdb"}));
 }
 
 TEST_F(RenderTest, AProgressBarIsForTerminalsAlone) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -77,6 +79,19 @@ TEST(Film, CountsSamplesThatAreNotFiniteAndStaysFinite) {
   const Image image = film.to_image();
   EXPECT_TRUE(std::all_of(image.values.begin(), image.values.end(),
                           [](float x) { return std::isfinite(x); }));
+}
+
+TEST(Film, CountsTheSamplesOfItsPixels) {
+  Film film(3, 2);
+  const auto counts = [&] {
+    const Film::SampleCounts found = film.sample_counts();
+    return std::array<std::size_t, 3>{found.fewest, found.most, found.pixels_without};
+  };
+  EXPECT_EQ(counts(), (std::array<std::size_t, 3>{0, 0, 6}));
+  for (const std::size_t pixel : {0, 1, 2, 4, 5, 5}) film.add(pixel, {});
+  EXPECT_EQ(counts(), (std::array<std::size_t, 3>{0, 2, 1}));
+  film.add(3, {});
+  EXPECT_EQ(counts(), (std::array<std::size_t, 3>{1, 2, 0}));
 }
 
 TEST(Film, RefusesToBeEmpty) {

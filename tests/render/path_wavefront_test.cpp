@@ -1,0 +1,96 @@
+// Jobs of a wavefront: done whole or not at all.
+
+#include "freepath/render/path_wavefront.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/transport/media_for_tests.h"
+
+namespace freepath::testing {
+namespace {
+
+constexpr int kWidth = 16;
+constexpr int kHeight = 8;
+
+/// Everything that a path needs, in one place.
+struct Stage {
+  explicit Stage(const Spectrum& sigma_s)
+      : medium({Component{.density = make_field(Vec3i(-8), Vec3i(7), hash_noise),
+                          .sigma_a = Spectrum(0.01F),
+                          .sigma_s = sigma_s}}),
+        camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kWidth, kHeight),
+        lights(ConstantEnvironment(Spectrum(1.0F))) {
+    setup.medium = &medium;
+    setup.camera = &camera;
+    setup.lights = &lights;
+    setup.slots = 64;
+    if (medium.has_grey_extinction()) {
+      setup.walkers.emplace_back(medium, WalkSettings{});
+    } else {
+      for (int channel = 0; channel < kChannels; ++channel) {
+        setup.walkers.emplace_back(medium, WalkSettings{}, channel);
+      }
+    }
+  }
+
+  Medium medium;
+  Camera camera;
+  Lights lights;
+  PathSetup setup;
+};
+
+constexpr PathJob kJob{.first_pixel = 16, .pixels = 64, .first_sample = 0, .samples = 3};
+
+void expect_same(const PathWavefront::Counts& a, const PathWavefront::Counts& b) {
+  EXPECT_EQ(a.paths, b.paths);
+  EXPECT_EQ(a.overflows, b.overflows);
+  EXPECT_EQ(a.walk.rays, b.walk.rays);
+  EXPECT_EQ(a.walk.lookups, b.walk.lookups);
+  EXPECT_EQ(a.walk.real_collisions, b.walk.real_collisions);
+}
+
+TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
+  // One path for all channels, and one for each.
+  for (const Spectrum& sigma_s : {Spectrum(0.5F), Spectrum(0.5F, 0.2F, 0.1F)}) {
+    Stage stage(sigma_s);
+    Film whole(kWidth, kHeight);
+    PathWavefront undisturbed(stage.setup);
+    uint64_t questions = 0;
+    ASSERT_TRUE(undisturbed.trace(kJob, whole, [&] { return ++questions, false; }));
+    ASSERT_GT(questions, 10U);  // more than once a path: within paths
+
+    PathWavefront wavefront(stage.setup);
+    for (uint64_t allowed = 0; allowed < questions; ++allowed) {
+      Film film(kWidth, kHeight);
+      uint64_t left = allowed;
+      EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return left-- == 0; })) << allowed;
+      EXPECT_EQ(film.sample_counts().most, 0U);
+    }
+    expect_same(wavefront.counts(), {});
+
+    // And what was stopped is no burden to what follows.
+    Film film(kWidth, kHeight);
+    EXPECT_TRUE(wavefront.trace(kJob, film));
+    EXPECT_EQ(film.to_image().values, whole.to_image().values);
+    expect_same(wavefront.counts(), undisturbed.counts());
+  }
+}
+
+TEST(PathWavefront, CountsThePathsOfFinishedJobs) {
+  Stage stage(Spectrum(0.5F));
+  PathWavefront wavefront(stage.setup);
+  Film film(kWidth, kHeight);
+  EXPECT_TRUE(wavefront.trace(kJob, film));
+  EXPECT_EQ(wavefront.counts().paths, kJob.pixels * kJob.samples);
+  EXPECT_TRUE(wavefront.trace({.first_pixel = 0, .pixels = 5, .samples = 1}, film));
+  EXPECT_EQ(wavefront.counts().paths, kJob.pixels * kJob.samples + 5);
+  EXPECT_EQ(film.sample_counts().most, 3U);
+  EXPECT_EQ(film.sample_counts().fewest, 0U);
+  EXPECT_EQ(film.sample_counts().pixels_without, kWidth * kHeight - 5 - kJob.pixels);
+}
+
+}  // namespace
+}  // namespace freepath::testing
