@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   add_generate_command(program);
   add_slab_command(program);
   add_diff_command(program);
+  add_trackers_command(program);
   refuse_empty_values(program);
   try {
     program.parse(argc, argv);

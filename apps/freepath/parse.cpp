@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "freepath/base/error.h"
+#include "freepath/transport/walker.h"
 
 namespace freepath::program {
 namespace {
@@ -89,6 +90,14 @@ void fail_choice(std::string_view text, std::string_view option,
     list += name;
   }
   fail("{}: '{}' is not one of: {}", option, text, list);
+}
+
+void warn_if_biased(const std::string& tracker) {
+  const std::string name = parse_method(tracker, tracker_infos()).name;
+  for (const MethodInfo& info : tracker_infos()) {
+    if (info.name != name || !info.biased) continue;
+    fmt::print(stderr, "freepath: warning: tracker {} is biased: {}\n", name, info.unbiased);
+  }
 }
 
 }  // namespace freepath::program

@@ -69,4 +69,7 @@ Value parse_choice(std::string_view text, std::string_view option,
   fail_choice(text, option, names);
 }
 
+/// Prints a warning for a tracker that is biased.
+void warn_if_biased(const std::string& tracker);
+
 }  // namespace freepath::program

@@ -13,6 +13,7 @@
 #include "apps/freepath/render_output.h"
 #include "freepath/base/error.h"
 #include "freepath/scene/volume_scene.h"
+#include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
 namespace {
@@ -173,7 +174,9 @@ RenderSettings read_settings(const Options& options) {
   settings.batch = options.batch;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
-  walk.tracker = read_method(options.tracker, "--tracker", tracker_infos());
+  walk.tracker = options.tracker == kAutoTracker
+                     ? options.tracker
+                     : read_method(options.tracker, "--tracker", tracker_infos());
   walk.transmittance = read_method(options.transmittance, "--transmittance", transmittance_infos());
   walk.interpolation = parse_choice(options.interpolation, "--interpolation", kInterpolations);
   walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
@@ -192,11 +195,22 @@ void check_not_empty(const RenderResult& result) {
                           : "give more --time, or choose a smaller --size or a thinner volume");
 }
 
+/// The tracker to walk with, after saying what users must know of it.
+std::string settle_tracker(const std::string& tracker, const Medium& medium) {
+  if (tracker == kAutoTracker) {
+    const TrackerChoice choice = choose_tracker(medium);
+    fmt::print(stderr, "auto: {}, since {}\n", choice.tracker, choice.reason);
+    return choice.tracker;
+  }
+  warn_if_biased(tracker);
+  return tracker;
+}
+
 void run(const Options& options) {
   // All that can be wrong with the options is said before the first second of work.
   for (const std::string& output : options.outputs) check_writable(output);
   check_statistics_file(options.stats, options.outputs, options.volume);
-  const RenderSettings settings = read_settings(options);
+  RenderSettings settings = read_settings(options);
   const OpticalProperties optics = read_optics(options);
   const LightOptions light_options = read_lights(options);
   const CameraOptions camera_options = read_camera(options);
@@ -215,6 +229,7 @@ void run(const Options& options) {
   report.seconds_load = watch.lap();
   const Medium medium = make_medium(std::move(loaded.field), optics, options.super_voxel);
   const Camera camera = make_camera(*medium.components()[0].density, camera_options, up);
+  settings.walk.tracker = settle_tracker(settings.walk.tracker, medium);
   report.seconds_build = watch.lap();
 
   const ProgressBar bar(std::size_t(camera.width()) * camera.height(), settings.time_limit);
@@ -320,7 +335,9 @@ void add_method_options(CLI::App& command, Options& o) {
       list += (list.empty() ? "" : ", ") + std::string(info.name);
     return list;
   };
-  command.add_option("--tracker", o.tracker, "Free-path sampling: " + names(tracker_infos()))
+  command
+      .add_option("--tracker", o.tracker,
+                  "Free-path sampling: " + names(tracker_infos()) + ", auto")
       ->capture_default_str()
       ->group("Method");
   command

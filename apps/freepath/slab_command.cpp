@@ -132,6 +132,9 @@ void print_table(const SlabResult& result) {
   row("  unscattered", result.unscattered);
   row("absorptance", {1 - result.total.mean, result.total.error});
   fmt::print("{} paths, tracker {}\n", result.paths, result.tracker);
+  if (!result.tracker_reason.empty()) {
+    fmt::print("auto: {}, since {}\n", result.tracker, result.tracker_reason);
+  }
 }
 
 void run(const Options& options) {
@@ -152,6 +155,7 @@ void run(const Options& options) {
     return !stop.requested();
   });
   bar.finish();
+  warn_if_biased(result.tracker);
   constexpr double kWorryingWeight = 10;
   if (result.largest_weight > kWorryingWeight) {
     fmt::print(stderr,
@@ -186,7 +190,7 @@ void add_method_options(CLI::App& command, Options& o) {
   for (const MethodInfo& info : tracker_infos()) {
     trackers += (trackers.empty() ? "" : ", ") + std::string(info.name);
   }
-  command.add_option("--tracker", o.tracker, "Free-path sampling: " + trackers)
+  command.add_option("--tracker", o.tracker, "Free-path sampling: " + trackers + ", auto")
       ->capture_default_str();
   command.add_option("--absorption", o.absorption, "analog or weighted")->capture_default_str();
   command

@@ -1,5 +1,5 @@
-// The densities of a medium at points, in lanes. A look-up has three stages, so that a walk can keep
-// several groups of lanes in flight and hide the latency of memory: aim (which voxel?), fetch
+// The densities of a medium at points, in lanes. A look-up has three stages, so that a walk can
+// keep several groups of lanes in flight and hide the latency of memory: aim (which voxel?), fetch
 // (which brick?), density (its value).
 
 #if defined(FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -72,15 +72,15 @@ class PathWavefront {
  private:
   /// A path in flight. Its ray stands in the same slot of rays_.
   struct Path {
-    Spectrum throughput;
-    Spectrum density;  ///< FlightStream::density of the flights so far.
-    Spectrum radiance;
+    Spectrum throughput{0.0F};
+    Spectrum density{1.0F};  ///< FlightStream::density of the flights so far.
+    Spectrum radiance{0.0F};
     float phase_pdf;  ///< Density with which the direction was drawn [1/sr].
     uint32_t bounce;  ///< Scatterings so far.
     uint32_t result;  ///< Place among the job's samples.
     uint64_t lookups;
     float alpha;
-    Spectrum albedo;
+    Spectrum albedo{0.0F};
     float depth;
     float depth_weight;
   };

@@ -15,6 +15,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/media/phase_function.h"
+#include "freepath/transport/auto_tracker.h"
 
 namespace freepath {
 namespace {
@@ -251,6 +252,12 @@ SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& set
   const SlabMedium slab = make_slab_medium(layers, settings.super_voxel);
   WalkSettings walk = settings.walk;
   walk.interpolation = Interpolation::kNearest;
+  std::string reason;
+  if (walk.tracker == kAutoTracker) {
+    TrackerChoice choice = choose_tracker(slab.medium);
+    walk.tracker = std::move(choice.tracker);
+    reason = std::move(choice.reason);
+  }
   const Walker walker(slab.medium, walk);
   const SlabSums sums = trace_chunks(slab, walker, settings, progress);
   if (!std::isfinite(sums.total.squares)) {
@@ -266,6 +273,7 @@ SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& set
   result.total = sums.total.estimate(sums.paths);
   result.largest_weight = sums.largest_weight;
   result.paths = sums.paths;
+  result.tracker_reason = std::move(reason);
   result.tracker = to_string(parse_method(walk.tracker, tracker_infos()), tracker_infos());
   return result;
 }

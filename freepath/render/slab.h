@@ -51,8 +51,9 @@ struct SlabResult {
   /// Largest magnitude of a weight that left. Far above 1 (a tracker whose rate is no bound), the
   /// variance may be infinite and the errors say little.
   double largest_weight = 0;
-  uint64_t paths = 0;   ///< Fewer than asked for where interrupted.
-  std::string tracker;  ///< As it was understood, options that are not standard included.
+  uint64_t paths = 0;          ///< Fewer than asked for where interrupted.
+  std::string tracker_reason;  ///< Why `auto` has chosen it; empty where it was given.
+  std::string tracker;         ///< As it was understood, options that are not standard included.
 };
 
 /// Called with the paths done and in all, by one thread at a time; false ends the tracing after the

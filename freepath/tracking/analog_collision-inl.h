@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
 template <int N, class Coefficients>
-HWY_INLINE void add_analog_emission(const WalkModes& modes, const Coefficients& sigma, MaskF collided,
-                             Collision<N>& c) {
+HWY_INLINE void add_analog_emission(const WalkModes& modes, const Coefficients& sigma,
+                                    MaskF collided, Collision<N>& c) {
   VecF share = hn::Div(set(1.0F), c.rate);
   if (modes.emission == EmissionTally::kAnalog) {
     const MaskF counted = emission_event<N>(modes, c, collided);
@@ -25,8 +25,8 @@ HWY_INLINE void add_analog_emission(const WalkModes& modes, const Coefficients& 
     share = hn::IfThenElseZero(counted, divide_or_zero(set(1.0F), real));
   }
   for (int channel = 0; channel < N; ++channel) {
-    c.emitted[channel] = hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share,
-                                    c.emitted[channel]);
+    c.emitted[channel] =
+        hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share, c.emitted[channel]);
   }
 }
 

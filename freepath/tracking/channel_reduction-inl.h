@@ -18,7 +18,10 @@ inline constexpr std::string_view kReductions[] = {"max", "average", "history-ma
 
 /// The option of the spectral trackers; its standard is history-average.
 inline constexpr MethodOption kCollisionProbability = {
-    "collision-probability", 3.0F, 0.0F, 3.0F,
+    "collision-probability",
+    3.0F,
+    0.0F,
+    3.0F,
     "how channels make one probability: their maximum or mean, of coefficients alone or times the "
     "path's throughput",
     kReductions};

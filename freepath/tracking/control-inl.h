@@ -44,8 +44,7 @@ HWY_INLINE MaskF choose_control(const WalkModes& modes, const Coefficients& cont
   for (int channel = 0; channel < N; ++channel) {
     const VecF coefficient =
         hn::IfThenElse(c.absorb, control.sigma_a[channel], control.sigma_s[channel]);
-    assign(c.weight[channel], by_control,
-           hn::Mul(c.weight[channel], hn::Mul(coefficient, scale)));
+    assign(c.weight[channel], by_control, hn::Mul(c.weight[channel], hn::Mul(coefficient, scale)));
   }
   // rate · P(rest), and a fresh uniform number out of what is left of this one.
   c.rate = hn::Mul(c.rate, divide_or_zero(probability[2], total));
@@ -59,8 +58,8 @@ HWY_INLINE MaskF decide_by_minimum(const WalkModes& modes, const Coefficients& c
                                    Collision<N>& c) {
   VecF probability[3] = {channel_mean<N>(control.sigma_a), channel_mean<N>(control.sigma_s),
                          hn::Zero(kFloat)};
-  probability[2] = hn::Max(hn::Sub(c.rate, hn::Add(probability[0], probability[1])),
-                           hn::Zero(kFloat));
+  probability[2] =
+      hn::Max(hn::Sub(c.rate, hn::Add(probability[0], probability[1])), hn::Zero(kFloat));
   return choose_control<N>(modes, control, probability, c);
 }
 

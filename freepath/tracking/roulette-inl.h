@@ -17,10 +17,9 @@ namespace freepath::HWY_NAMESPACE {
 HWY_INLINE VecF roulette_gain(float threshold, VecF largest, VecF uniform) {
   const MaskF played = hn::Lt(largest, set(threshold));
   const VecF survival = hn::Mul(largest, set(threshold > 0 ? 1.0F / threshold : 0.0F));
-  const MaskF ends = hn::Or(hn::AndNot(hn::Lt(uniform, survival), played),
-                            hn::Eq(largest, hn::Zero(kFloat)));
-  const VecF gain =
-      hn::IfThenElse(played, divide_or_zero(set(1.0F), survival), set(1.0F));
+  const MaskF ends =
+      hn::Or(hn::AndNot(hn::Lt(uniform, survival), played), hn::Eq(largest, hn::Zero(kFloat)));
+  const VecF gain = hn::IfThenElse(played, divide_or_zero(set(1.0F), survival), set(1.0F));
   return hn::IfThenZeroElse(ends, gain);
 }
 

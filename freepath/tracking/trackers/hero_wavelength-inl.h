@@ -133,8 +133,8 @@ struct HeroWavelength : MethodTraits {
     VecF sum = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
       // rate_λ P_e,λ: the density of this event if λ were the hero
-      const VecF real = hn::IfThenElse(c.absorb, absorb[channel],
-                                       hn::Sub(sigma_t[channel], absorb[channel]));
+      const VecF real =
+          hn::IfThenElse(c.absorb, absorb[channel], hn::Sub(sigma_t[channel], absorb[channel]));
       const VecF null = hn::Sub(majorant[channel], sigma_t[channel]);
       event[channel] = hn::IfThenElse(hn::Or(c.absorb, c.scatter), real, null);
       density[channel] = hn::Mul(density[channel], event[channel]);

@@ -36,13 +36,17 @@ struct SpectralDecomposition : MethodTraits {
   static constexpr bool kRateNeedsControl = true;
 
   explicit SpectralDecomposition(std::span<const float> options)
-      : reduce(options[0]), control(options[1]), rate_scale(options[2]), rate_floor(control_rate_floor(control, rate_scale)) {}
+      : reduce(options[0]),
+        control(options[1]),
+        rate_scale(options[2]),
+        rate_floor(control_rate_floor(control, rate_scale)) {}
 
   float control_scale() const { return control; }
 
   template <class Bounds>
   HWY_INLINE VecF rate(const Bounds& bounds) const {
-    return hn::Max(hn::Mul(channel_max(bounds.majorant), set(rate_scale)), hn::Mul(channel_max(bounds.minorant), set(rate_floor)));
+    return hn::Max(hn::Mul(channel_max(bounds.majorant), set(rate_scale)),
+                   hn::Mul(channel_max(bounds.minorant), set(rate_floor)));
   }
 
   template <int N, class Coefficients>
@@ -53,8 +57,7 @@ struct SpectralDecomposition : MethodTraits {
       rest[channel] = hn::Sub(c.rate, hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]));
     }
     VecF probability[3] = {reduce.over<N>(sigma.sigma_a, c.weight),
-                           reduce.over<N>(sigma.sigma_s, c.weight),
-                           reduce.over<N>(rest, c.weight)};
+                           reduce.over<N>(sigma.sigma_s, c.weight), reduce.over<N>(rest, c.weight)};
     return choose_control<N>(modes, sigma, probability, c);
   }
 

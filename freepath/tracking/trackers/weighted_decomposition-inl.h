@@ -32,13 +32,16 @@ struct WeightedDecomposition : MethodTraits {
   static constexpr bool kRateNeedsControl = true;
 
   explicit WeightedDecomposition(std::span<const float> options)
-      : control(options[0]), rate_scale(options[1]), rate_floor(control_rate_floor(control, rate_scale)) {}
+      : control(options[0]),
+        rate_scale(options[1]),
+        rate_floor(control_rate_floor(control, rate_scale)) {}
 
   float control_scale() const { return control; }
 
   template <class Bounds>
   HWY_INLINE VecF rate(const Bounds& bounds) const {
-    return hn::Max(hn::Mul(bounds.majorant[0], set(rate_scale)), hn::Mul(bounds.minorant[0], set(rate_floor)));
+    return hn::Max(hn::Mul(bounds.majorant[0], set(rate_scale)),
+                   hn::Mul(bounds.minorant[0], set(rate_floor)));
   }
 
   template <int N, class Coefficients>

@@ -59,8 +59,7 @@ struct NextFlight : MethodTraits {
     VecF largest = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
       const VecF sigma_t = hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]);
-      c.weight[channel] =
-          hn::Mul(c.weight[channel], hn::Mul(hn::Sub(c.rate, sigma_t), per_rate));
+      c.weight[channel] = hn::Mul(c.weight[channel], hn::Mul(hn::Sub(c.rate, sigma_t), per_rate));
       c.rows[channel] = hn::MulAdd(c.rows[channel], passed, c.weight[channel]);
       largest = hn::Max(largest, hn::Max(hn::Abs(c.weight[channel]), hn::Abs(c.rows[channel])));
     }

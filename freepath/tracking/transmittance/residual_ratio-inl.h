@@ -71,8 +71,7 @@ struct ResidualRatio : MethodTraits {
     const VecF per_rate = hn::Div(set(1.0F), c.rate);
     for (int channel = 0; channel < N; ++channel) {
       const VecF sigma = hn::Add(residual.sigma_a[channel], residual.sigma_s[channel]);
-      c.weight[channel] =
-          hn::Mul(c.weight[channel], hn::Mul(hn::Sub(c.rate, sigma), per_rate));
+      c.weight[channel] = hn::Mul(c.weight[channel], hn::Mul(hn::Sub(c.rate, sigma), per_rate));
     }
     play_roulette<N>(roulette, c);
   }

@@ -1,0 +1,54 @@
+#include "freepath/transport/auto_tracker.h"
+
+#include <fmt/format.h>
+
+#include "freepath/base/spectrum.h"
+
+namespace freepath {
+namespace {
+
+/// A control pays for reading the minima once it decides this share of the collisions; measured
+/// with bench/tracker_bench.
+constexpr double kWorthwhileControl = 0.3;
+
+/// Reading one component a collision pays from so many on.
+constexpr std::size_t kManyComponents = 3;
+
+/// Share of the tentative collisions that the minima decide, were the rays spread evenly.
+double control_share(const Medium& medium) {
+  const SuperVoxels& cells = medium.super_voxels();
+  const std::size_t components = medium.components().size();
+  double control = 0;
+  double rate = 0;
+  for (std::size_t k = 0; k < components; ++k) {
+    const double sigma_t = largest(medium.components()[k].sigma_t());
+    for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
+      control += sigma_t * cells.minima[cell * components + k];
+      rate += sigma_t * cells.maxima[cell * components + k];
+    }
+  }
+  return rate > 0 ? control / rate : 0;
+}
+
+}  // namespace
+
+TrackerChoice choose_tracker(const Medium& medium) {
+  const double share = control_share(medium);
+  const std::string decided =
+      fmt::format("minima of super-voxels decide {:.0f} % of the collisions", 100 * share);
+  if (!medium.has_grey_extinction()) {
+    const std::string chromatic = "the extinction differs between channels, and " + decided;
+    return share >= kWorthwhileControl ? TrackerChoice{"spectral-decomposition", chromatic}
+                                       : TrackerChoice{"spectral", chromatic};
+  }
+  if (medium.components().size() >= kManyComponents) {
+    return {"multi-volume", fmt::format("channels share one extinction, and one of {} components "
+                                        "is looked up instead of all",
+                                        medium.components().size())};
+  }
+  const std::string grey = "channels share one extinction, and " + decided;
+  return share >= kWorthwhileControl ? TrackerChoice{"decomposition", grey}
+                                     : TrackerChoice{"delta", grey};
+}
+
+}  // namespace freepath
