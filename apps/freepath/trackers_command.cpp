@@ -24,12 +24,10 @@ Examples:
   freepath render haze.vdb -o haze.exr --sigma-s 1,2,4 --tracker spectral --transmittance ratio)";
 
 /// `auto` stands for another tracker, and is in no registry.
-constexpr MethodInfo kAutoInfo = {"auto",
-                                  "chooses a tracker from the medium and says which and why",
-                                  "",
-                                  "as the tracker it chooses",
-                                  "",
-                                  {}};
+constexpr MethodInfo kAutoInfo = {
+    "auto", "chooses a tracker from the medium and says which and why",
+    "",     "as the tracker it chooses",
+    "",     {}};
 
 std::string values_of(const MethodOption& option) {
   if (!option.choices.empty()) return fmt::format("{}", fmt::join(option.choices, "|"));
@@ -69,9 +67,8 @@ nlohmann::json to_json(const std::vector<MethodInfo>& infos) {
   for (const MethodInfo& info : infos) {
     nlohmann::json options = nlohmann::json::array();
     for (const MethodOption& option : info.options) {
-      nlohmann::json entry = {{"name", option.name},
-                              {"default", standard_of(option)},
-                              {"meaning", option.meaning}};
+      nlohmann::json entry = {
+          {"name", option.name}, {"default", standard_of(option)}, {"meaning", option.meaning}};
       if (option.choices.empty()) {
         entry["default"] = option.standard;
         entry["minimum"] = option.minimum;

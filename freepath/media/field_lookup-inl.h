@@ -10,6 +10,7 @@
 #endif
 
 #include "freepath/base/lanes-inl.h"
+#include "freepath/media/density_function.h"
 #include "freepath/media/medium_view.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,6 +24,7 @@ class FieldLookup {
     HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
     HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
     HWY_ALIGN_MAX int32_t address[Medium::kMaxComponents][kLanes];  ///< Voxel in the array.
+    HWY_ALIGN_MAX float computed[Medium::kMaxComponents][kLanes];   ///< Of a density function.
   };
 
   explicit FieldLookup(const MediumView& medium)
@@ -36,6 +38,7 @@ class FieldLookup {
   /// neighbours under stochastic interpolation. One tap serves all components.
   HWY_INLINE void aim(const VecF (&point)[3], MaskF lanes, VecU bits0, VecU bits1,
                       State& state) const {
+    if (medium_.components[0].function != nullptr) return aim_at_function(point, lanes, state);
     VecU random[3];
     random[0] = hn::ShiftRight<11>(bits0);
     random[1] = hn::ShiftRight<11>(bits1);
@@ -68,12 +71,14 @@ class FieldLookup {
 
   /// Asks for the index entries of the voxels aimed at.
   HWY_INLINE void prefetch_index(const State& state) const {
+    if (medium_.components[0].function != nullptr) return;
     for (int k = 0; k < medium_.component_count; ++k) {
       prefetch_lanes(medium_.components[k].index, state.entry);
     }
   }
   /// The same for one component a lane.
   HWY_INLINE void prefetch_index(const State& state, const int32_t (&component)[kLanes]) const {
+    if (medium_.components[0].function != nullptr) return;
     for (size_t lane = 0; lane < kLanes; ++lane) {
       hwy::Prefetch(medium_.components[component[lane]].index + state.entry[lane]);
     }
@@ -81,6 +86,7 @@ class FieldLookup {
 
   /// Stage 2: the brick of that voxel.
   HWY_INLINE void fetch(State& state) const {
+    if (medium_.components[0].function != nullptr) return compute(state);
     const VecI within = voxel_in_brick(state);
     const VecI entry = hn::Load(kInt, state.entry);
     for (int k = 0; k < medium_.component_count; ++k) {
@@ -90,6 +96,7 @@ class FieldLookup {
   }
   /// The same for one component a lane; the other components' bricks stay untouched.
   HWY_INLINE void fetch(State& state, const int32_t (&component)[kLanes]) const {
+    if (medium_.components[0].function != nullptr) return compute(state);
     const VecI within = voxel_in_brick(state);
     const VecI entry = hn::Load(kInt, state.entry);
     const VecI wanted = hn::Load(kInt, component);
@@ -106,6 +113,7 @@ class FieldLookup {
 
   /// Stage 3: the density of one component.
   HWY_INLINE VecF density(int k, const State& state) const {
+    if (medium_.components[0].function != nullptr) return hn::Load(kFloat, state.computed[k]);
     if (medium_.interpolation == Interpolation::kTrilinear) {
       return trilinear(k, state, hn::Eq(hn::Zero(kInt), hn::Zero(kInt)));
     }
@@ -113,12 +121,33 @@ class FieldLookup {
   }
   /// The same in the lanes of a mask, 0 in the others.
   HWY_INLINE VecF density(int k, const State& state, MaskI lanes) const {
-    return hn::IfThenElseZero(float_mask(lanes), medium_.interpolation == Interpolation::kTrilinear
-                                                     ? trilinear(k, state, lanes)
-                                                     : density(k, state));
+    const bool trilinear_taps = medium_.interpolation == Interpolation::kTrilinear &&
+                                medium_.components[0].function == nullptr;
+    return hn::IfThenElseZero(float_mask(lanes),
+                              trilinear_taps ? trilinear(k, state, lanes) : density(k, state));
   }
 
  private:
+  /// Keeps the points where a density function is to be evaluated.
+  HWY_INLINE void aim_at_function(const VecF (&point)[3], MaskF lanes, State& state) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const VecF place = hn::MulAdd(hn::IfThenElseZero(lanes, point[axis]),
+                                    set(medium_.cell_edge[axis]), set(medium_.cell_origin[axis]));
+      hn::Store(place, kFloat, state.fraction[axis]);
+    }
+  }
+
+  /// Evaluates density functions at those points, one call a component.
+  HWY_NOINLINE void compute(State& state) const {
+    Vec3f positions[kLanes];
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      positions[lane] = {state.fraction[0][lane], state.fraction[1][lane], state.fraction[2][lane]};
+    }
+    for (int k = 0; k < medium_.component_count; ++k) {
+      medium_.components[k].function->evaluate(positions, state.computed[k]);
+    }
+  }
+
   HWY_INLINE VecI brick_entry(const VecI (&voxel)[3]) const {
     const VecI row =
         hn::Add(hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, medium_.brick_counts[1])),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "freepath/base/error.h"
+#include "freepath/media/density_function.h"
 
 namespace freepath {
 namespace {
@@ -28,10 +29,20 @@ void check_component(const Component& component, const Component& first, std::si
     fail("component {}: g is {}; the mean cosine must lie strictly between -1 and 1", number,
          component.g);
   }
-  if (!component.density || component.density->voxels.empty()) {
+  if (!component.density || (!component.density->function && component.density->voxels.empty())) {
     fail("component {}: its density has no active voxel", number);
   }
   const Field& field = *component.density;
+  if ((field.function == nullptr) != (first.density->function == nullptr)) {
+    fail(
+        "grids '{}' and '{}': one is computed and one of voxels; components are all the one or "
+        "all the other",
+        field.name, first.density->name);
+  }
+  if (field.function && field.function->cells != first.density->function->cells) {
+    fail("density functions '{}' and '{}' differ in cells; components must share them", field.name,
+         first.density->name);
+  }
   if (field.index_to_world != first.density->index_to_world ||
       field.voxels.origin() != first.density->voxels.origin() ||
       field.voxels.brick_counts() != first.density->voxels.brick_counts()) {
@@ -74,23 +85,17 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
   if (components_.empty() || components_.size() > kMaxComponents) {
     fail("a medium has 1 to {} components, not {}", kMaxComponents, components_.size());
   }
-  std::vector<const BrickMap*> densities;
-  std::vector<float> extinction;
-  const Matrix4d& index_to_world = components_[0].density->index_to_world;
   for (std::size_t k = 0; k < components_.size(); ++k) {
     check_component(components_[k], components_[0], k);
-    densities.push_back(&components_[k].density->voxels);
-    extinction.push_back(
-        static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
   }
-  const Vec3i& bricks = densities[0]->brick_counts();
-  if (std::max({bricks.x, bricks.y, bricks.z}) > kMaxBricksAlongAxis) {
-    fail("grid '{}' is more than {} voxels long: positions along it exceed the precision of floats",
-         components_[0].density->name, kMaxBricksAlongAxis * BrickMap::kBrickSize);
+  if (components_[0].density->function) {
+    build_from_functions();
+  } else {
+    build_from_voxels(super_voxel);
   }
-  super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
   walk_cells_ = mark_empty_cells(super_voxels_);
 
+  const Matrix4d& index_to_world = components_[0].density->index_to_world;
   if (!world_to_index) {
     const double determinant = index_to_world.determinant();
     if (!std::isfinite(determinant) || determinant == 0) {
@@ -98,7 +103,8 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
     }
     world_to_index = index_to_world.inverse();
   }
-  const Vec3i& origin = densities[0]->origin();
+  const Vec3i origin =
+      components_[0].density->function ? Vec3i(0) : components_[0].density->voxels.origin();
   const double scale = 1.0 / super_voxels_.cell_size;
   for (int to = 0; to < 3; ++to) {
     for (int from = 0; from < 3; ++from) {
@@ -109,7 +115,53 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
   }
 }
 
+void Medium::build_from_voxels(int super_voxel) {
+  std::vector<const BrickMap*> densities;
+  std::vector<float> extinction;
+  const Matrix4d& index_to_world = components_[0].density->index_to_world;
+  for (std::size_t k = 0; k < components_.size(); ++k) {
+    densities.push_back(&components_[k].density->voxels);
+    extinction.push_back(
+        static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
+  }
+  const Vec3i& bricks = densities[0]->brick_counts();
+  if (std::max({bricks.x, bricks.y, bricks.z}) > kMaxBricksAlongAxis) {
+    fail("grid '{}' is more than {} voxels long: positions along it exceed the precision of floats",
+         components_[0].density->name, kMaxBricksAlongAxis * BrickMap::kBrickSize);
+  }
+  super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
+}
+
+void Medium::build_from_functions() {
+  const DensityFunction& first = *components_[0].density->function;
+  const Vec3i cells = first.cells;
+  super_voxels_.cell_size = 1;
+  super_voxels_.counts = cells;
+  super_voxels_.components = static_cast<int>(components_.size());
+  const Vec3f edge = first.box.size() / Vec3f(cells);
+  for (int x = 0; x < cells.x; ++x) {
+    for (int y = 0; y < cells.y; ++y) {
+      for (int z = 0; z < cells.z; ++z) {
+        const Vec3f low = first.box.min + edge * Vec3f(Vec3i(x, y, z));
+        bool empty = true;
+        for (const Component& component : components_) {
+          const auto [minimum, maximum] = component.density->function->bounds({low, low + edge});
+          if (!(minimum >= 0) || !(maximum >= minimum) || !std::isfinite(maximum)) {
+            fail("density function '{}' has the bounds {} to {} in the cell at ({}, {}, {})",
+                 component.density->name, minimum, maximum, low.x, low.y, low.z);
+          }
+          super_voxels_.minima.push_back(minimum);
+          super_voxels_.maxima.push_back(maximum);
+          empty = empty && maximum == 0;
+        }
+        super_voxels_.empty_radius.push_back(empty ? 1 : 0);
+      }
+    }
+  }
+}
+
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
+  if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels_.counts)};
   const BrickMap& map = components_[0].density->voxels;
   Vec3i low = map.active_min();
   Vec3i high = map.active_max();
@@ -131,6 +183,9 @@ Box3f Medium::walk_bounds(Interpolation interpolation) const {
 }
 
 Box3d Medium::world_bounds() const {
+  if (const auto& function = components_[0].density->function) {
+    return {Vec3d(function->box.min), Vec3d(function->box.max)};
+  }
   Box3d box;
   for (const Component& component : components_) {
     const BrickMap& map = component.density->voxels;

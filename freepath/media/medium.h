@@ -78,6 +78,9 @@ class Medium {
   bool emits() const;
 
  private:
+  void build_from_voxels(int super_voxel);
+  void build_from_functions();
+
   std::vector<Component> components_;
   SuperVoxels super_voxels_;
   WalkCells walk_cells_;

@@ -1,5 +1,7 @@
 #include "freepath/media/medium_view.h"
 
+#include "freepath/media/density_function.h"
+
 namespace freepath {
 
 MediumView view_of(const Medium& medium, Interpolation interpolation, int channel) {
@@ -18,10 +20,17 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
   view.minima = cells.minima.data();
   view.world_to_walk = medium.world_to_walk();
   view.interpolation = interpolation;
+  if (const DensityFunction* const function = medium.components()[0].density->function.get()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      view.cell_origin[axis] = function->box.min[axis];
+      view.cell_edge[axis] = function->box.size()[axis] / static_cast<float>(function->cells[axis]);
+    }
+  }
   view.component_count = static_cast<int>(medium.components().size());
   for (int k = 0; k < view.component_count; ++k) {
     const Component& component = medium.components()[k];
     ComponentView& target = view.components[k];
+    target.function = component.density->function.get();
     target.index = component.density->voxels.index().data();
     target.voxels = component.density->voxels.voxels().data();
     for (int slot = 0; slot < kChannels; ++slot) {

@@ -10,8 +10,9 @@ namespace freepath {
 
 /// Cross sections of one component in the channels that a walk carries [1/m per density].
 struct ComponentView {
-  const uint32_t* index = nullptr;  ///< Brick of each index entry.
-  const float* voxels = nullptr;    ///< Voxels of the bricks.
+  const uint32_t* index = nullptr;            ///< Brick of each index entry.
+  const float* voxels = nullptr;              ///< Voxels of the bricks.
+  const DensityFunction* function = nullptr;  ///< In place of both, if set.
   std::array<float, kChannels> sigma_a{};
   std::array<float, kChannels> sigma_s{};
   std::array<float, kChannels> emission{};  ///< sigma_a · L_e
@@ -28,6 +29,8 @@ struct MediumView {
   std::array<float, 3> bounds_max{};
   AffineMap world_to_walk;
   Interpolation interpolation = Interpolation::kTrilinear;
+  std::array<float, 3> cell_origin{};  ///< Corner and edges of the first cell [world], where
+  std::array<float, 3> cell_edge{};    ///< densities are computed.
   int component_count = 0;
   std::array<ComponentView, Medium::kMaxComponents> components{};
 };

@@ -404,7 +404,8 @@ class Walk {
     for (int channel = 0; channel < N; ++channel) {
       const VecF now = hn::IfThenElseZero(c.lanes, c.weight[channel]);
       largest_weight_ = hn::Max(largest_weight_, hn::Abs(now));
-      negative = hn::Or(negative, hn::Lt(now, hn::Zero(kFloat)));
+      // Where the density reaches its bound, rounding may leave a trifle below 0.
+      negative = hn::Or(negative, hn::Lt(now, set(-1e-6F)));
     }
     statistics_.negative_weights += hn::CountTrue(kFloat, negative);
   }
