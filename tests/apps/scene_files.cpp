@@ -22,14 +22,7 @@ float ball(const Vec3i& voxel) {
   return inside > 0 ? static_cast<float>(2 * inside) : 0.0F;
 }
 
-void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density) {
-  Matrix4d index_to_world;
-  index_to_world.setScale(Vec3d(0.125));
-  write_cube(file, density, index_to_world);
-}
-
-void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density,
-                const Matrix4d& index_to_world) {
+void write_cube(const std::string& file, const Density& density, const Matrix4d& index_to_world) {
   const Vec3i low(-kEdge / 2);
   const Vec3i high(kEdge / 2 - 1);
   BrickMapBuilder builder(low, high, 0);

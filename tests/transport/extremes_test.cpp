@@ -239,6 +239,23 @@ TEST(Extremes, RaysWithoutFiniteNumbersEscapeUntouched) {
   }
 }
 
+// A ray that ends nobody knows where goes nowhere, even where it begins in a dense medium.
+TEST(Extremes, RaysWhoseEndIsNotANumberEscapeUntouched) {
+  RayList list;
+  for (const Vec3f& direction : directions_26()) {
+    list.add(Vec3f(0.1F), direction, kNan);
+    list.add(direction * -50.0F, direction, -kNan);
+  }
+  const RayStream& rays = list.finish();
+  const Medium medium = medium_of(box_field(), 5);
+  expect_to_end([&] {
+    with_every_method(medium, rays, [](const FlightStream& flights, std::size_t i, bool) {
+      expect_untouched(flights, i);
+      EXPECT_EQ(flights.t[i], 0) << "ray " << i;
+    });
+  });
+}
+
 TEST(Extremes, DistantOriginsKeepTheLengthOfTheirRays) {
   // A box of 24 of the given unit, seen from the given distance. The distance of a hit is not known
   // better than a float of that size is; nor is the length inside.
