@@ -129,13 +129,13 @@ SuperVoxelFacts super_voxel_facts(const Field& field) {
   return {cells.cell_size, cells.counts, summarize(cells), cells.memory_bytes()};
 }
 
-void print_grid(const Described& grid) {
+std::string grid_text(const Described& grid) {
   const GridInfo& info = grid.info;
-  const auto row = [](const char* name, const std::string& text) {
-    fmt::print("  {:<14} {}\n", name, text);
+  std::string lines = fmt::format("grid {}: \"{}\"\n", info.index, info.name);
+  const auto row = [&](const char* name, const std::string& text) {
+    lines += fmt::format("  {:<14} {}\n", name, text);
   };
   const Vec3d voxel = placement_of(info.index_to_world).voxel_size;
-  fmt::print("grid {}: \"{}\"\n", info.index, info.name);
   row("type", fmt::format("{}, {}", info.type, info.grid_class));
   row("voxel size", fmt::format("{:.6g} x {:.6g} x {:.6g}", voxel.x, voxel.y, voxel.z));
   row("transform", transform_text(info));
@@ -170,6 +170,7 @@ void print_grid(const Described& grid) {
   } else {
     row("not loadable", info.reason);
   }
+  return lines;
 }
 
 nlohmann::json to_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
@@ -243,7 +244,9 @@ void run(const Options& options) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  for_each_grid(options, print_grid);
+  std::string text;  // printed once there can't be an error any more
+  for_each_grid(options, [&](const Described& grid) { text += grid_text(grid); });
+  fmt::print("{}", text);
 }
 
 }  // namespace

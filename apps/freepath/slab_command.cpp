@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -52,13 +53,22 @@ struct Options {
 
 /// "1,2,inf": infinity is a number here.
 std::vector<double> read_taus(const std::string& text) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const std::size_t comma = text.rfind(',');
-  const bool one = comma == std::string::npos;
-  if (text.substr(one ? 0 : comma + 1) != "inf") return parse_numbers(text, "--tau");
-  if (one) return {kInfinity};
-  std::vector<double> taus = parse_numbers(text.substr(0, comma), "--tau");
-  taus.push_back(kInfinity);
+  std::vector<double> taus;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string item = text.substr(begin, end - begin);
+    const bool last = end == text.size();
+    if (item != "inf") {
+      taus.push_back(parse_numbers(item, "--tau")[0]);
+    } else if (last) {
+      taus.push_back(std::numeric_limits<double>::infinity());
+    } else {
+      fail("--tau: '{}' has inf before other layers; only the last layer can be a half-space",
+           text);
+    }
+    begin = end + 1;
+  }
   return taus;
 }
 

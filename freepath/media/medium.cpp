@@ -21,10 +21,17 @@ void check_spectrum(const Spectrum& spectrum, const char* name, std::size_t comp
   }
 }
 
+bool is_finite(const Matrix4d& matrix) {
+  return std::all_of(matrix.getValue(), matrix.getValue() + 16,
+                     [](double value) { return std::isfinite(value); });
+}
+
 void check_component(const Component& component, const Component& first, std::size_t number) {
   check_spectrum(component.sigma_a, "sigma_a", number);
   check_spectrum(component.sigma_s, "sigma_s", number);
   check_spectrum(component.emission, "emission", number);
+  check_spectrum(component.sigma_t(), "sigma_a + sigma_s", number);
+  check_spectrum(component.sigma_a * component.emission, "sigma_a · emission", number);
   if (!(std::abs(component.g) < 1)) {
     fail("component {}: g is {}; the mean cosine must lie strictly between -1 and 1", number,
          component.g);
@@ -42,6 +49,9 @@ void check_component(const Component& component, const Component& first, std::si
   if (field.function && field.function->cells != first.density->function->cells) {
     fail("density functions '{}' and '{}' differ in cells; components must share them", field.name,
          first.density->name);
+  }
+  if (!is_finite(field.index_to_world)) {
+    fail("grid '{}': its transform is not finite; set another", field.name);
   }
   if (field.index_to_world != first.density->index_to_world ||
       field.voxels.origin() != first.density->voxels.origin() ||

@@ -21,6 +21,16 @@ double half_extent(double fov) {
   return std::tan(0.5 * fov * std::numbers::pi / 180);
 }
 
+/// Walks take no longer lengths for finite (transport/entry-inl.h).
+constexpr double kLargestCoordinate = 1e30;
+
+void check_distance(const char* what, const Vec3d& point) {
+  if (std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > kLargestCoordinate) {
+    fail("the camera's {} ({}, {}, {}) is further away than {}; choose one nearer to the volume",
+         what, point.x, point.y, point.z, kLargestCoordinate);
+  }
+}
+
 /// Right, up and backwards of a camera.
 struct CameraAxes {
   Vec3d right, up, back;
@@ -41,6 +51,8 @@ Camera::Camera(const View& view, int width, int height)
   if (!is_finite(view.from) || !is_finite(view.at) || !is_finite(view.up)) {
     fail("the camera's position, target and up vector must be finite numbers");
   }
+  check_distance("position", view.from);
+  check_distance("target", view.at);
   const Vec3d sight = view.at - view.from;
   // Below this the line of sight would be made of rounding errors.
   constexpr double kSmallest = 1e-12;

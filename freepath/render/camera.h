@@ -27,9 +27,8 @@ struct CameraRay {
 class Camera {
  public:
   /// @param width,height size of the film [pixels]
-  /// @throws Error if `from` and `at` are the same, `up` is parallel to the line of sight, the
-  /// angle
-  ///   of view is not in (0, 180), the film is empty, or a number is not finite
+  /// @throws Error if `from` and `at` are the same or beyond 1e30, `up` is parallel to the line of
+  ///   sight, the angle of view is not in (0, 180), the film is empty, or a number is not finite
   Camera(const View& view, int width, int height);
 
   /// The ray through a point of the film. (0, 0) is the upper left corner of the film, x runs to

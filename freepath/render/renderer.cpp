@@ -2,10 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +10,7 @@
 #include <mutex>
 
 #include "freepath/base/error.h"
+#include "freepath/base/threads.h"
 #include "freepath/render/deadline.h"
 
 namespace freepath {
@@ -64,9 +62,7 @@ class PassRenderer {
         settings_(settings),
         progress_(progress),
         film_(film),
-        more_threads_(tbb::global_control::max_allowed_parallelism,
-                      std::max(settings.threads, tbb::info::default_concurrency())),
-        arena_(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic),
+        threads_(settings.threads),
         wavefronts_([this] { return PathWavefront(setup_); }),
         start_(Clock::now()),
         deadline_(settings.time_limit) {}
@@ -109,9 +105,9 @@ class PassRenderer {
 
   void pass(uint32_t samples) {
     std::atomic<std::size_t> next_pixel = 0;
-    arena_.execute([&] {
+    threads_.execute([&] {
       tbb::parallel_for(
-          tbb::blocked_range<int>(0, arena_.max_concurrency(), 1),
+          tbb::blocked_range<int>(0, threads_.count(), 1),
           [&](const tbb::blocked_range<int>&) { work(samples, next_pixel); },
           tbb::simple_partitioner());
     });
@@ -172,8 +168,7 @@ class PassRenderer {
   const RenderSettings& settings_;
   const ProgressFunction& progress_;
   Film& film_;
-  tbb::global_control more_threads_;  // than the machine has, if that is wanted
-  tbb::task_arena arena_;
+  Threads threads_;
   tbb::enumerable_thread_specific<PathWavefront> wavefronts_;
   Clock::time_point start_;
   Deadline deadline_;

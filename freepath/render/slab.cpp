@@ -3,7 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,6 +13,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
+#include "freepath/base/threads.h"
 #include "freepath/media/phase_function.h"
 #include "freepath/transport/auto_tracker.h"
 
@@ -206,7 +206,7 @@ void check_settings(const SlabSettings& settings) {
 /// Traces all chunks, and merges their sums in order.
 SlabSums trace_chunks(const SlabMedium& slab, const Walker& walker, const SlabSettings& settings,
                       const SlabProgress& progress) {
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  Threads threads(settings.threads);
   tbb::enumerable_thread_specific<SlabWavefront> wavefronts(
       [&] { return SlabWavefront(slab, walker, settings); });
   const uint64_t chunks = (settings.paths - 1) / kPathsPerChunk + 1;
@@ -229,7 +229,7 @@ SlabSums trace_chunks(const SlabMedium& slab, const Walker& walker, const SlabSe
   for (uint64_t begin = 0; begin < chunks && !stop; begin += kChunksPerPass) {
     const uint64_t end = std::min(chunks, begin + kChunksPerPass);
     sums.assign(end - begin, SlabSums{});
-    arena.execute([&] {
+    threads.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<uint64_t>(begin, end, 1),
           [&](const tbb::blocked_range<uint64_t>& range) {

@@ -74,7 +74,6 @@ struct Cloud {
   static constexpr float kBaseSwell = 1.2F;  // height of the swell of the base
 
   float density(const Vec3f& point, const SphereUnion& near) const;
-  bool sample(const GridShape& shape, const BrickPlace& place, std::span<float> values) const;
 };
 
 float Cloud::density(const Vec3f& point, const SphereUnion& near) const {
@@ -99,19 +98,6 @@ float Cloud::density(const Vec3f& point, const SphereUnion& near) const {
   const float variation = 0.86F + 0.14F * fractal_noise(point * 0.15F, 2, 0.5F, seed + 5);
   const float border = smooth_step(0, edge, depth) * smooth_step(0, 2.5F, height);
   return std::min(1.0F, border * body * variation);
-}
-
-bool Cloud::sample(const GridShape& shape, const BrickPlace& place, std::span<float> values) const {
-  const SphereUnion near = spheres.near(place.centre, place.radius + kWarp);
-  if (near.distance(place.centre) > place.radius + billows.outward() + kWarp) return false;
-  bool any = false;
-  for (int i = 0; i < BrickMap::kBrickVoxels; ++i) {
-    const Vec3i voxel = place.first + Vec3i(i >> 6, i >> 3 & 7, i & 7);
-    const float value = density(shape.centre(voxel), near);
-    values[static_cast<std::size_t>(i)] = value;
-    any |= value > 0;
-  }
-  return any;
 }
 
 }  // namespace
@@ -140,7 +126,10 @@ std::vector<Field> generate_cloud(const ProceduralOptions& options) {
   return sample_fields(
       shape, names,
       [&](const BrickPlace& place, std::span<float> values) {
-        return cloud.sample(shape, place, values);
+        return sample_near(cloud.spheres, Cloud::kWarp, billows.outward(), shape, place, values,
+                           [&](const Vec3f& point, const SphereUnion& near) {
+                             return std::array{cloud.density(point, near)};
+                           });
       },
       options.progress);
 }

@@ -2,6 +2,7 @@
 // between lobes, where what burns breaks through; the crests have cooled to soot.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "freepath/scene/procedural.h"
@@ -46,14 +47,11 @@ struct Fireball {
 
   static constexpr float kWarp = 2.5F;
 
-  struct Sample {
-    float density = 0, temperature = 0;
-  };
-  Sample at(const Vec3f& point, const SphereUnion& near) const;
-  bool sample(const GridShape& shape, const BrickPlace& place, std::span<float> values) const;
+  /// Density and temperature.
+  std::array<float, 2> at(const Vec3f& point, const SphereUnion& near) const;
 };
 
-Fireball::Sample Fireball::at(const Vec3f& point, const SphereUnion& near) const {
+std::array<float, 2> Fireball::at(const Vec3f& point, const SphereUnion& near) const {
   if (point.y < 0 || near.distance(point) > billows.outward() + kWarp) return {};
   const Vec3f pushed = point + curl_noise(point * 0.06F, seed + 2) * (kWarp / 6);
   const float rough = -near.distance(pushed);
@@ -66,27 +64,9 @@ Fireball::Sample Fireball::at(const Vec3f& point, const SphereUnion& near) const
   const float heat =
       0.5F + 0.75F * inner + 0.5F * eddies + 0.55F * crease - 0.3F * smooth_step(4, 0, depth);
   const float hot = smooth_step(0, 1, heat);
-  Sample sample;
-  sample.temperature = kCoolest + (kHottest - kCoolest) * hot;
   const float soot = 0.25F + 0.75F * (1 - hot);  // what has burnt out is thick
-  sample.density = std::min(1.0F, smooth_step(0, edge, depth) * soot);
-  return sample;
-}
-
-bool Fireball::sample(const GridShape& shape, const BrickPlace& place,
-                      std::span<float> values) const {
-  const SphereUnion near = spheres.near(place.centre, place.radius + kWarp);
-  if (near.distance(place.centre) > place.radius + billows.outward() + kWarp) return false;
-  bool any = false;
-  for (int i = 0; i < BrickMap::kBrickVoxels; ++i) {
-    const Vec3i voxel = place.first + Vec3i(i >> 6, i >> 3 & 7, i & 7);
-    const Sample found = at(shape.centre(voxel), near);
-    if (found.density <= 0) continue;
-    values[static_cast<std::size_t>(i)] = found.density;
-    values[static_cast<std::size_t>(i) + BrickMap::kBrickVoxels] = found.temperature;
-    any = true;
-  }
-  return any;
+  const float density = std::min(1.0F, smooth_step(0, edge, depth) * soot);
+  return {density, kCoolest + (kHottest - kCoolest) * hot};
 }
 
 }  // namespace
@@ -120,7 +100,9 @@ std::vector<Field> generate_fireball(const ProceduralOptions& options) {
   return sample_fields(
       shape, names,
       [&](const BrickPlace& place, std::span<float> values) {
-        return fireball.sample(shape, place, values);
+        return sample_near(
+            fireball.spheres, Fireball::kWarp, billows.outward(), shape, place, values,
+            [&](const Vec3f& point, const SphereUnion& near) { return fireball.at(point, near); });
       },
       options.progress);
 }

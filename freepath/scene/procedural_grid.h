@@ -42,6 +42,27 @@ std::vector<Field> sample_fields(const GridShape& shape, std::span<const std::st
                                  const BrickSampler& sampler,
                                  const std::function<void(double)>& progress);
 
+/// Samples the voxels of a brick.
+/// @param at point of the world → array of one value for each field; where the first, the density,
+///   is not above 0, nothing is kept
+/// @return whether anything was kept
+template <class Sample>
+bool sample_voxels(const GridShape& shape, const BrickPlace& place, std::span<float> values,
+                   Sample at) {
+  bool any = false;
+  for (std::size_t i = 0; i < BrickMap::kBrickVoxels; ++i) {
+    const auto offset = static_cast<int>(i);
+    const Vec3i voxel = place.first + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
+    const auto found = at(shape.centre(voxel));
+    if (!(found[0] > 0)) continue;
+    for (std::size_t field = 0; field < found.size(); ++field) {
+      values[field * BrickMap::kBrickVoxels + i] = found[field];
+    }
+    any = true;
+  }
+  return any;
+}
+
 struct Sphere {
   Vec3f centre{0};
   float radius = 0;
@@ -62,5 +83,17 @@ class SphereUnion {
  private:
   std::vector<Sphere> spheres_;
 };
+
+/// As sample_voxels, for a shape that is made of spheres.
+/// @param warp how far points are pushed before their distance to the spheres is taken [world]
+/// @param outward how far the shape reaches beyond the spheres [world]
+/// @param at (point of the world, the spheres that matter there) → values
+template <class Sample>
+bool sample_near(const SphereUnion& spheres, float warp, float outward, const GridShape& shape,
+                 const BrickPlace& place, std::span<float> values, Sample at) {
+  const SphereUnion near = spheres.near(place.centre, place.radius + warp);
+  if (near.distance(place.centre) > place.radius + outward + warp) return false;
+  return sample_voxels(shape, place, values, [&](const Vec3f& point) { return at(point, near); });
+}
 
 }  // namespace freepath::procedural

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "freepath/scene/procedural.h"
@@ -130,14 +131,8 @@ std::vector<Field> generate_smoke(const ProceduralOptions& options) {
   return sample_fields(
       shape, names,
       [&](const BrickPlace& place, std::span<float> values) {
-        bool any = false;
-        for (int i = 0; i < BrickMap::kBrickVoxels; ++i) {
-          const Vec3i voxel = place.first + Vec3i(i >> 6, i >> 3 & 7, i & 7);
-          const float value = smoke.density(shape.centre(voxel));
-          values[static_cast<std::size_t>(i)] = value;
-          any |= value > 0;
-        }
-        return any;
+        return sample_voxels(shape, place, values,
+                             [&](const Vec3f& point) { return std::array{smoke.density(point)}; });
       },
       options.progress);
 }

@@ -60,7 +60,7 @@ class MediumEntry {
 
 /// Enters kLanes rays from slot `first` on. The origin moves to where a ray meets the bounds, so
 /// that a distant camera costs no precision inside. A ray that misses, that has no direction, or
-/// whose numbers are not finite gets length 0.
+/// whose numbers are not finite (but t_max may be infinite) gets length 0.
 HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
   VecF world_origin[3];
   VecF world_direction[3];
@@ -73,7 +73,9 @@ HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
   VecF direction[3];
   VecF inverse[3];
   VecF begin = hn::Zero(kFloat);
-  VecF end = hn::Min(hn::LoadU(kFloat, rays_.t_max.data() + first), set(kHuge));
+  const VecF t_max = hn::LoadU(kFloat, rays_.t_max.data() + first);
+  const MaskF ends = hn::Eq(t_max, t_max);  // no NaN
+  VecF end = hn::Min(t_max, set(kHuge));
   for (int axis = 0; axis < 3; ++axis) {
     origin[axis] = set(map.offset[axis]);
     direction[axis] = hn::Zero(kFloat);
@@ -100,10 +102,10 @@ HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
   }
   const MaskF finite = hn::Eq(hn::Mul(sum, zero), zero);
   const MaskF moves = hn::Gt(reach, set(1.0F / kHuge));  // else t would not move the point
-  const MaskF meets = hn::And(hn::And(finite, moves), hn::Lt(begin, end));
+  const MaskF meets = hn::And(hn::And(finite, moves), hn::And(ends, hn::Lt(begin, end)));
   const VecF length = hn::IfThenElseZero(meets, hn::Sub(end, begin));
   // A ray that misses has flown to its end.
-  const VecF start = hn::IfThenElse(meets, begin, hn::LoadU(kFloat, rays_.t_max.data() + first));
+  const VecF start = hn::IfThenElse(meets, begin, hn::IfThenElseZero(ends, t_max));
   hn::Store(start, kFloat, rows_.begin + row);
   hn::Store(length, kFloat, rows_.length + row);
   VecI record = hn::Zero(kInt);

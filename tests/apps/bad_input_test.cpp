@@ -7,6 +7,7 @@
 
 #include "tests/apps/program.h"
 #include "tests/apps/scene_files.h"
+#include "tests/io/volume_files.h"
 
 namespace freepath::testing {
 namespace {
@@ -80,6 +81,8 @@ TEST_F(BadInputTest, NumbersOutOfRange) {
   expect_render_error("--albedo 0.5 --sigma-s 1", {"--albedo", "--sigma-s"});
   expect_render_error("--sigma-s 1,-1,1", {"sigma_s"});
   expect_render_error("--sigma-s 1,2,3,4", {"--sigma-s", "4 values"});
+  expect_render_error("--sigma-s 3e38 --sigma-a 3e38", {"sigma_a + sigma_s"});
+  expect_render_error("--sigma-a 1e20 --le 1e20", {"sigma_a · emission"});
   expect_render_error("--le -1", {"emission"});
   expect_render_error("--g 1", {"g", "1"});
   expect_render_error("--fov 0", {"angle of view"});
@@ -114,6 +117,8 @@ TEST_F(BadInputTest, ChoicesThatThereAreNot) {
 TEST_F(BadInputTest, ViewsThatAreNone) {
   expect_render_error("--look-at 1,2", {"--look-at"});
   expect_render_error("--look-at 1,2,3,1,2,3", {"camera"});
+  expect_render_error("--look-at 1e300,0,0", {"camera", "position", "1e+300"});
+  expect_render_error("--look-at 1,2,3,0,-1e31,0", {"camera", "target", "-1e+31"});
 }
 
 TEST_F(BadInputTest, VolumesThatAreNone) {
@@ -155,6 +160,20 @@ TEST_F(BadInputTest, DensitiesThatAreNone) {
   EXPECT_NE(clamped.messages.find("freepath: warning: "), std::string::npos) << clamped;
 }
 
+// What is good in a file is not told either: the one line is all that is said.
+TEST_F(BadInputTest, InfoOfAFileWhoseSecondGridIsTooLarge) {
+  testing_volumes::TestGrid small;
+  small.name = "small";
+  small.voxels = {{Vec3i(0), 1}};
+  testing_volumes::TestGrid vast = small;
+  vast.name = "vast";
+  vast.voxels.push_back({Vec3i(1 << 20), 1});
+  testing_volumes::write_vdb_file(path("two.vdb"), {small, vast});
+  expect_error("info two.vdb", {"two.vdb", "vast", "crop"});
+  expect_error("info two.vdb --json", {"two.vdb", "vast", "crop"});
+  EXPECT_EQ(run("info two.vdb --grid small").status, 0);
+}
+
 TEST_F(BadInputTest, EnvironmentsThatAreNone) {
   write_text(path("text.hdr"), "no picture at all");
   write_environment(path("nan.exr"), 1, std::numeric_limits<float>::quiet_NaN());
@@ -194,6 +213,9 @@ TEST_F(BadInputTest, SlabsThatAreNone) {
   expect_error("slab --tau -1", {"tau", "-1"});
   expect_error("slab --tau nan", {"--tau"});
   expect_error("slab --tau 1e30", {"tau"});
+  expect_error("slab --tau 1,inf,2", {"--tau", "1,inf,2", "only the last layer"});
+  expect_error("slab --tau inf,", {"--tau", "only the last layer"});
+  expect_error("slab --tau 1,,2", {"--tau", "''"});
   expect_error("slab --tau inf --albedo 1", {"half-space", "albedo"});
   expect_error("slab --tau 1,2 --albedo 0.1,0.2,0.3", {"--albedo", "3 values"});
 }

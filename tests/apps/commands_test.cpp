@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <thread>
 
 #include "tests/apps/program.h"
 #include "tests/apps/scene_files.h"
@@ -88,6 +90,20 @@ TEST_F(CommandsTest, SlabAgreesWithThePublishedValue) {
   EXPECT_NEAR(slab["unscattered"].get<double>(), std::exp(-1.0), 0.01);
   EXPECT_EQ(slab["paths"], 200000);
   EXPECT_EQ(slab["tracker"], "delta");
+}
+
+TEST_F(CommandsTest, MoreThreadsThanTheMachineHasAreFine) {
+  write_cube(path("ball.vdb"));
+  const std::string threads =
+      " --threads " + std::to_string(std::thread::hardware_concurrency() + 3);
+  const Outcome slab = run("slab --tau 1 --paths 100000" + threads);
+  EXPECT_EQ(slab.status, 0) << slab;
+  EXPECT_EQ(slab.messages, "");
+  const Outcome render = run("render ball.vdb -o picture.exr --size 99x99 --spp 1" + threads);
+  EXPECT_EQ(render.status, 0) << render;
+  // Three lines of a summary, and no warning.
+  EXPECT_EQ(std::count(render.messages.begin(), render.messages.end(), '\n'), 3) << render;
+  EXPECT_EQ(render.messages.find("arning"), std::string::npos) << render;
 }
 
 TEST_F(CommandsTest, DiffMeasures) {

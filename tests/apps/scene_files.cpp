@@ -3,10 +3,11 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <utility>
+#include <memory>
 
 #include "freepath/io/image.h"
 #include "freepath/io/volume_write.h"
+#include "tests/media/make_field.h"
 
 namespace freepath::testing {
 
@@ -22,30 +23,11 @@ float ball(const Vec3i& voxel) {
   return inside > 0 ? static_cast<float>(2 * inside) : 0.0F;
 }
 
-void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density) {
-  Matrix4d index_to_world;
-  index_to_world.setScale(Vec3d(0.125));
-  write_cube(file, density, index_to_world);
-}
-
-void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density,
-                const Matrix4d& index_to_world) {
-  const Vec3i low(-kEdge / 2);
-  const Vec3i high(kEdge / 2 - 1);
-  BrickMapBuilder builder(low, high, 0);
-  for (int x = low.x; x <= high.x; ++x) {
-    for (int y = low.y; y <= high.y; ++y) {
-      for (int z = low.z; z <= high.z; ++z) {
-        const float value = density(Vec3i(x, y, z));
-        if (value != 0) builder.set_voxel(Vec3i(x, y, z), value);
-      }
-    }
-  }
-  Field field;
-  field.name = "density";
-  field.voxels = std::move(builder).finish();
-  field.index_to_world = index_to_world;
-  write_vdb(file, std::array<const Field*, 1>{&field});
+void write_cube(const std::string& file, const Density& density, const Matrix4d& index_to_world) {
+  const std::shared_ptr<Field> field =
+      make_field(Vec3i(-kEdge / 2), Vec3i(kEdge / 2 - 1), density, index_to_world);
+  field->name = "density";
+  write_vdb(file, std::array<const Field*, 1>{field.get()});
 }
 
 void write_environment(const std::string& file, float value, float odd_value) {

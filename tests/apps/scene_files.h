@@ -8,15 +8,18 @@
 
 namespace freepath::testing {
 
+/// The density of a voxel.
+using Density = std::function<float(const Vec3i&)>;
+
 /// A ball of density, 16 voxels wide, thickest in its middle: 2·(1 - r²/64).
 float ball(const Vec3i& voxel);
 
-/// Writes a grid "density" of 16³ voxels of size 1/8, around the origin, to a .vdb file.
-void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density = ball);
+/// Index space to a world in which voxels are 1/8 wide.
+inline Matrix4d eighths() { return Matrix4d().setScale(Vec3d(0.125)); }
 
-/// Writes the same with other placements in the world.
-void write_cube(const std::string& file, const std::function<float(const Vec3i&)>& density,
-                const Matrix4d& index_to_world);
+/// Writes a grid "density" of 16³ voxels around the origin to a .vdb file.
+void write_cube(const std::string& file, const Density& density = ball,
+                const Matrix4d& index_to_world = eighths());
 
 /// Writes an image of 16x8 pixels of one value, with another one in a single pixel.
 void write_environment(const std::string& file, float value, float odd_value);

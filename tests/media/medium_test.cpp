@@ -66,6 +66,21 @@ TEST(Medium, RefusesCoefficientsThatAreNegativeOrNotFinite) {
   }
 }
 
+TEST(Medium, RefusesCoefficientsWhoseSumOrProductOverflows) {
+  Component component = plain();
+  component.sigma_a = component.sigma_s = Spectrum(1, 2e38F, 1);
+  EXPECT_EQ(
+      complaint({component}),
+      "component 0: sigma_a + sigma_s of channel 1 is inf; it must be finite and not negative");
+  component.sigma_s = Spectrum(1.0F);
+  component.emission = Spectrum(1, 1, 1e38F);
+  EXPECT_EQ(complaint({component}), "");
+  component.emission = Spectrum(1, 2, 1);
+  EXPECT_EQ(complaint({component}),
+            "component 0: sigma_a · emission of channel 1 is inf; it must be finite and not "
+            "negative");
+}
+
 TEST(Medium, RefusesAMeanCosineThatIsNotBetweenMinusOneAndOne) {
   for (const float bad : {-1.0F, 1.0F, 1.5F, kNan, kInfinity}) {
     Component component = plain();
@@ -115,7 +130,10 @@ TEST(Medium, RefusesATransformThatIsNotFinite) {
   for (const double bad : {double{kNan}, double{kInfinity}}) {
     Matrix4d matrix;
     matrix[1][1] = bad;
-    EXPECT_NE(complaint({component_of(make_field(Vec3i(0), Vec3i(5), hash_noise, matrix))}), "");
+    const Component component = component_of(make_field(Vec3i(0), Vec3i(5), hash_noise, matrix));
+    for (const auto& components : {std::vector{component}, std::vector{plain(), component}}) {
+      EXPECT_EQ(complaint(components), "grid 'test': its transform is not finite; set another");
+    }
   }
 }
 

@@ -60,6 +60,24 @@ TEST(Camera, RefusesDegenerateViews) {
   EXPECT_THROW(Camera({.from = o, .at = {0, nan, 5}}, 10, 10), Error);
 }
 
+TEST(Camera, RefusesToStandTooFarAway) {
+  const auto complaint = [](const Vec3d& from, const Vec3d& at) -> std::string {
+    try {
+      const Camera camera({.from = from, .at = at, .up = {0, 1, 0.5}}, 10, 10);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(complaint({1e300, 0, 0}, {0, 0, 0}),
+            "the camera's position (1e+300, 0, 0) is further away than 1e+30; choose one nearer to "
+            "the volume");
+  EXPECT_EQ(complaint({1, 0, 0}, {0, -1.1e30, 0}),
+            "the camera's target (0, -1.1e+30, 0) is further away than 1e+30; choose one nearer to "
+            "the volume");
+  EXPECT_EQ(complaint({0, 0, 0.99e30}, {0, 0, 0}), "");
+}
+
 TEST(FrameBox, ShowsTheWholeBoxWithASmallMargin) {
   const Box3d boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
                          {{100, 200, 300}, {104, 201, 302}},
