@@ -2,7 +2,8 @@
 
 namespace freepath {
 
-MediumView view_of(const Medium& medium, Interpolation interpolation, int channel) {
+MediumView view_of(const Medium& medium, Interpolation interpolation, int channel,
+                   const Vec3d& origin) {
   MediumView view;
   const SuperVoxels& cells = medium.super_voxels();
   const BrickMap& map = medium.components()[0].density->voxels;
@@ -15,7 +16,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
   }
   view.cell_size = cells.cell_size;
   view.cells = medium.walk_cells().data();
-  view.world_to_walk = medium.world_to_walk();
+  view.world_to_walk = medium.world_to_walk(origin);
   view.interpolation = interpolation;
   view.component_count = static_cast<int>(medium.components().size());
   for (int k = 0; k < view.component_count; ++k) {

@@ -34,7 +34,7 @@ std::span<const MethodInfo> transmittance_infos() {
 }
 
 Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
-    : view_(view_of(medium, settings.interpolation, channel)),
+    : view_(view_of(medium, settings.interpolation, channel, settings.origin)),
       seed_(settings.seed),
       channels_(channel == kAllChannels && !medium.is_grey() ? kChannels : 1) {
   if (channel == kAllChannels && !medium.has_grey_extinction()) {
