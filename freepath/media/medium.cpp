@@ -118,10 +118,9 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
   const double scale = 1.0 / super_voxels_.cell_size;
   for (int to = 0; to < 3; ++to) {
     for (int from = 0; from < 3; ++from) {
-      world_to_walk_.linear[from][to] = static_cast<float>((*world_to_index)[from][to] * scale);
+      world_to_walk_[from][to] = (*world_to_index)[from][to] * scale;
     }
-    world_to_walk_.offset[to] =
-        static_cast<float>(((*world_to_index)[3][to] - origin[to] + 0.5) * scale);
+    world_to_walk_[3][to] = ((*world_to_index)[3][to] - origin[to] + 0.5) * scale;
   }
 }
 
@@ -168,6 +167,19 @@ void Medium::build_from_functions() {
       }
     }
   }
+}
+
+AffineMap Medium::world_to_walk(const Vec3d& origin) const {
+  AffineMap map;
+  for (int to = 0; to < 3; ++to) {
+    double offset = world_to_walk_[3][to];
+    for (int from = 0; from < 3; ++from) {
+      offset += origin[from] * world_to_walk_[from][to];
+      map.linear[from][to] = static_cast<float>(world_to_walk_[from][to]);
+    }
+    map.offset[to] = static_cast<float>(offset);
+  }
+  return map;
 }
 
 Box3f Medium::walk_bounds(Interpolation interpolation) const {

@@ -63,7 +63,9 @@ class Medium {
 
   /// World space → walk space, whose unit is the edge of a super-voxel and whose cells are those of
   /// the super-voxels.
-  const AffineMap& world_to_walk() const { return world_to_walk_; }
+  /// @param origin the point of the world that positions are relative to: where it is near the
+  ///   medium, single precision holds them however far from the world's origin that is
+  AffineMap world_to_walk(const Vec3d& origin = Vec3d(0)) const;
 
   /// Where the density may differ from 0 [walk space], which depends on the filter's reach.
   Box3f walk_bounds(Interpolation interpolation) const;
@@ -84,7 +86,7 @@ class Medium {
   std::vector<Component> components_;
   SuperVoxels super_voxels_;
   WalkCells walk_cells_;
-  AffineMap world_to_walk_;
+  Matrix4d world_to_walk_;
 };
 
 }  // namespace freepath

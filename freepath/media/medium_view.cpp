@@ -4,7 +4,8 @@
 
 namespace freepath {
 
-MediumView view_of(const Medium& medium, Interpolation interpolation, int channel) {
+MediumView view_of(const Medium& medium, Interpolation interpolation, int channel,
+                   const Vec3d& origin) {
   MediumView view;
   const SuperVoxels& cells = medium.super_voxels();
   const BrickMap& map = medium.components()[0].density->voxels;
@@ -18,7 +19,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
   view.cell_size = cells.cell_size;
   view.cells = medium.walk_cells().data();
   view.minima = cells.minima.data();
-  view.world_to_walk = medium.world_to_walk();
+  view.world_to_walk = medium.world_to_walk(origin);
   view.interpolation = interpolation;
   if (const DensityFunction* const function = medium.components()[0].density->function.get()) {
     for (int axis = 0; axis < 3; ++axis) {

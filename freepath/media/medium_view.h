@@ -36,6 +36,8 @@ struct MediumView {
 };
 
 /// @param channel the one channel to carry, or -1 for all of them
-MediumView view_of(const Medium& medium, Interpolation interpolation, int channel);
+/// @param origin what positions of rays are relative to [world]
+MediumView view_of(const Medium& medium, Interpolation interpolation, int channel,
+                   const Vec3d& origin = Vec3d(0));
 
 }  // namespace freepath

@@ -137,7 +137,7 @@ void PathWavefront::start_path(const PathJob& job, std::size_t number, std::size
   const std::size_t row = pixel / width;
   const float y = static_cast<float>(row) + random.uniform();
   const CameraRay ray = setup_.camera->ray(x, y);
-  set_ray(rays_, slot, Vec3f(ray.origin), ray.direction);
+  set_ray(rays_, slot, Vec3f(ray.origin - setup_.origin), ray.direction);
 
   Path& path = paths_in_flight_[slot];
   path = {};

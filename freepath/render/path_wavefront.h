@@ -20,6 +20,8 @@ struct PathSetup {
   const Medium* medium = nullptr;
   const Camera* camera = nullptr;
   const Lights* lights = nullptr;
+  /// What rays are relative to [world]; that of the walkers' settings.
+  Vec3d origin{0, 0, 0};
   /// One walker that carries all channels, or one for each channel (a path each).
   std::vector<Walker> walkers;
   Absorption absorption = Absorption::kWeighted;

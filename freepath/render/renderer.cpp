@@ -43,11 +43,14 @@ PathSetup make_setup(const Medium& medium, const Camera& camera, const Lights& l
   setup.seed = settings.walk.seed;
   setup.max_scatterings = settings.max_scatterings;
   setup.slots = std::max<std::size_t>(settings.batch, 1);
+  setup.origin = medium.world_bounds().center();
+  WalkSettings walk = settings.walk;
+  walk.origin = setup.origin;
   if (shares_paths(medium, settings.walk)) {
-    setup.walkers.emplace_back(medium, settings.walk);
+    setup.walkers.emplace_back(medium, walk);
   } else {
     for (int channel = 0; channel < kChannels; ++channel) {
-      setup.walkers.emplace_back(medium, settings.walk, channel);
+      setup.walkers.emplace_back(medium, walk, channel);
     }
   }
   return setup;

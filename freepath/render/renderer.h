@@ -18,7 +18,7 @@ struct RenderSettings {
   int threads = 0;  ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
   std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
-  WalkSettings walk;
+  WalkSettings walk;         ///< Its origin is chosen by the renderer: the middle of the medium.
 };
 
 /// What is done so far.

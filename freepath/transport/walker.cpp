@@ -47,7 +47,7 @@ bool shares_paths(const Medium& medium, const WalkSettings& settings) {
 }
 
 Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
-    : view_(view_of(medium, settings.interpolation, channel)),
+    : view_(view_of(medium, settings.interpolation, channel, settings.origin)),
       seed_(settings.seed),
       channels_(channel == kAllChannels && !medium.is_grey() ? kChannels : 1) {
   if (channel == kAllChannels && !shares_paths(medium, settings)) {

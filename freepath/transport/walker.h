@@ -18,6 +18,9 @@ struct WalkSettings {
   EmissionTally emission = EmissionTally::kCollision;
   Simd simd = Simd::kBest;
   uint64_t seed = 0;
+  /// What positions of rays are relative to [world]. They are in single precision: of a medium far
+  /// from the world's origin, a point near it should be the origin.
+  Vec3d origin{0, 0, 0};
 };
 
 std::span<const MethodInfo> tracker_infos();

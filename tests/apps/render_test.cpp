@@ -229,6 +229,28 @@ TEST_F(RenderTest, UpTurnsTheFramedView) {
   EXPECT_NE(render("--up y").values, render("--up z").values);
 }
 
+TEST_F(RenderTest, AVolumeFarAwayIsFramedAndRenderedAsOneNearby) {
+  write_cube(path("far.vdb"), ball, eighths() * Matrix4d().setTranslation(Vec3d(1e9, -1e9, 1e6)));
+  for (const std::string volume : {"ball", "far"}) {
+    const Outcome outcome = run("render " + volume + ".vdb -o " + volume +
+                                ".exr --size 24x16 --spp 64 --density-scale 2");
+    EXPECT_EQ(outcome.status, 0) << outcome;
+  }
+  const Image near = read_image(path("ball.exr"));
+  const Image far = read_image(path("far.exr"));
+  const int alpha = find_channel(near, "A").value();
+  double sums[2] = {};
+  for (std::size_t i = alpha; i < near.values.size(); i += near.channels.size()) {
+    sums[0] += near.values[i];
+    sums[1] += far.values[i];
+  }
+  EXPECT_GT(sums[0], 30);
+  EXPECT_NEAR(sums[1], sums[0], 1e-3 * sums[0]);
+  for (const auto& z : compare("ball.exr", "far.exr")["z"]) {
+    EXPECT_LT(std::abs(z.get<double>()), 4.5);
+  }
+}
+
 TEST_F(RenderTest, TimeEndsIt) {
   const Outcome outcome =
       run("render ball.vdb -o picture.exr --size 64x64 --time 1 --stats stats.json");

@@ -74,9 +74,9 @@ bool nothing_is_loadable(const std::filesystem::path& path) {
     if (brick >= map.brick_count()) return ::testing::AssertionFailure() << "brick " << brick;
     if (brick == 0) continue;
     const auto row = static_cast<int>(i / counts.z);
-    const Vec3i first = map.origin() + Vec3i(row / counts.y, row % counts.y,
-                                             static_cast<int>(i % counts.z)) *
-                                           BrickMap::kBrickSize;
+    const Vec3i first =
+        map.origin() + Vec3i(row / counts.y, row % counts.y, static_cast<int>(i % counts.z)) *
+                           BrickMap::kBrickSize;
     for (int offset = 0; offset < BrickMap::kBrickVoxels; ++offset) {
       if (map.voxels()[brick * BrickMap::kBrickVoxels + offset] == 0) continue;
       const Vec3i voxel = first + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
@@ -97,9 +97,9 @@ bool nothing_is_loadable(const std::filesystem::path& path) {
     if (grid.name != loaded.field.name) continue;
     const BrickMap& map = loaded.field.voxels;
     const bool same = grid.loadable && grid.active_voxels == loaded.active_voxels &&
-                      grid.active_tiles == loaded.active_tiles &&
-                      grid.minimum == loaded.minimum && grid.maximum == loaded.maximum &&
-                      grid.active_min == map.active_min() && grid.active_max == map.active_max() &&
+                      grid.active_tiles == loaded.active_tiles && grid.minimum == loaded.minimum &&
+                      grid.maximum == loaded.maximum && grid.active_min == map.active_min() &&
+                      grid.active_max == map.active_max() &&
                       grid.index_to_world == loaded.field.index_to_world;
     return (same ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
            << "grid " << grid.name << ", reason " << grid.reason;

@@ -205,6 +205,29 @@ TEST(Medium, WorldToWalkPutsVoxelCentresIntoTheMiddleOfTheirPlace) {
   }
 }
 
+// Relative to a point near it, the map of a medium does not depend on where in the world it is.
+TEST(Medium, WorldToWalkRelativeToAPointNearByHasNoDistance) {
+  const Vec3i low(-14, 2, 7);
+  const Vec3i high(9, 18, 20);
+  const Vec3d near(11, -20, 29);
+  const auto map_at = [&](const Vec3d& place) {
+    const Matrix4d matrix = crooked_transform() * Matrix4d().setTranslation(place);
+    const Medium medium({component_of(make_field(low, high, hash_noise, matrix))}, 4);
+    return medium.world_to_walk(near + place);
+  };
+  const AffineMap here = map_at(Vec3d(0));
+  for (const double distance : {1e6, 1e9}) {
+    const AffineMap there = map_at(Vec3d(distance, -distance, 2 * distance));
+    EXPECT_EQ(there.linear, here.linear);
+    for (int axis = 0; axis < 3; ++axis) {
+      // Doubles at this distance, divided by the smallest edge of a voxel, and a few roundings.
+      const double rounding = 2 * distance * 0x1p-53 / 0.25 * 16;
+      EXPECT_NEAR(there.offset[axis], here.offset[axis], rounding) << distance;
+      EXPECT_LT(rounding, 2e-5);
+    }
+  }
+}
+
 /// What an albedo makes of an extinction that is one for all channels.
 Component coloured(std::shared_ptr<const Field> field, const Spectrum& albedo, float sigma_t,
                    float scale) {

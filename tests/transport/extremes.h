@@ -143,12 +143,14 @@ inline void expect_homogeneous(const FlightStream& flights, std::size_t i, float
 
 /// Walks the rays by delta tracking without interpolation on every target.
 inline void with_every_target(const Medium& medium, const RayStream& rays,
-                              const std::function<void(const FlightStream&, std::size_t)>& check) {
+                              const std::function<void(const FlightStream&, std::size_t)>& check,
+                              const Vec3d& origin = Vec3d(0)) {
   for (const Simd simd : available_simd()) {
     SCOPED_TRACE(to_string(simd));
     WalkSettings settings;
     settings.simd = simd;
     settings.interpolation = Interpolation::kNearest;
+    settings.origin = origin;
     FlightStream flights;
     WalkStatistics statistics;
     Walker(medium, settings).free_paths(rays, flights, statistics);
