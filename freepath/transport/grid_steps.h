@@ -24,6 +24,7 @@ class GridSteps {
 
  private:
   Vec3d origin_, direction_;
+  Vec3d inverse_;  ///< 1/direction, infinite where that is 0
   double t_, end_;
   Vec3i cell_;
   bool done_;

@@ -196,13 +196,17 @@ bool RayMedium::Cells::next(Cell& cell) {
   const Vec3i base = medium_.inside(steps_.cell());
   cell.begin = steps_.begin();
   cell.end = steps_.leave(1);
-  const bool flat = medium_.view_.interpolation == Interpolation::kNearest;
+  if (medium_.view_.interpolation == Interpolation::kNearest) {
+    for (int k = 0; k < medium_.component_count(); ++k) {
+      cell.density[k][0] = medium_.voxel(k, base);
+    }
+    return true;
+  }
   const Vec3d step = path_.direction * (cell.end - cell.begin);
   Vec3d place = path_.origin + path_.direction * cell.begin - Vec3d(0.5) - Vec3d(base);
   for (int axis = 0; axis < 3; ++axis) place[axis] = std::clamp(place[axis], 0.0, 1.0);
   for (int k = 0; k < medium_.component_count(); ++k) {
-    cell.density[k] = flat ? std::array<double, 4>{medium_.voxel(k, base), 0, 0, 0}
-                           : medium_.cubic(k, base, place, step);
+    cell.density[k] = medium_.cubic(k, base, place, step);
   }
   return true;
 }

@@ -41,7 +41,8 @@ class RayMedium {
   struct Cell {
     double begin = 0;
     double end = 0;
-    /// Of each component: Σ_j density[j] s^j with s from 0 to 1 along the part.
+    /// Of each component: Σ_j density[j] s^j with s from 0 to 1 along the part. Without
+    /// interpolation next() sets density[0] alone, and the others stay 0.
     std::array<std::array<double, 4>, Medium::kMaxComponents> density{};
   };
 

@@ -28,12 +28,26 @@ void visit_cells(const Medium& medium, const typename Medium::Path& path,
   }
 }
 
-/// The extinction of one channel along a cell, times the cell's length: an optical depth per s.
-template <ReferenceMedium Medium, class SigmaT>
-Cubic depth_along(const Medium& medium, const typename Medium::Cell& cell, SigmaT sigma_t) {
+/// Mean over channels of each component's extinction per unit of density [1/m].
+template <int N, ReferenceMedium Medium>
+typename Medium::Densities mean_cross_sections(const Medium& medium) {
+  typename Medium::Densities sigma_t{};
+  for (int k = 0; k < medium.component_count(); ++k) {
+    typename Medium::Densities one{};
+    one[k] = 1;
+    sigma_t[k] = mean_extinction<N>(medium, one);
+  }
+  return sigma_t;
+}
+
+/// The extinction along a cell, times the cell's length: an optical depth per s.
+/// @param sigma_t of each component per unit of density [1/m]
+template <ReferenceMedium Medium>
+Cubic depth_along(const Medium& medium, const typename Medium::Cell& cell,
+                  const typename Medium::Densities& sigma_t) {
   Cubic sum{};
   for (int k = 0; k < medium.component_count(); ++k) {
-    const double factor = sigma_t(medium.component(k)) * (cell.end - cell.begin);
+    const double factor = sigma_t[k] * (cell.end - cell.begin);
     for (int power = 0; power < 4; ++power) sum[power] += factor * cell.density[k][power];
   }
   return sum;
@@ -70,16 +84,10 @@ struct Regular {
   template <int N, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& modes,
            RandomStream& random, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
-    const auto mean_sigma_t = [](const auto& component) {
-      double sum = 0;
-      for (int channel = 0; channel < N; ++channel) {
-        sum += double(component.sigma_a[channel]) + component.sigma_s[channel];
-      }
-      return sum / N;
-    };
+    const auto sigma_t = mean_cross_sections<N>(medium);
     double rest = exponential_double(random);
     visit_cells(medium, path, statistics, [&](const typename Medium::Cell& cell) {
-      const Cubic depth = depth_along(medium, cell, mean_sigma_t);
+      const Cubic depth = depth_along(medium, cell, sigma_t);
       const double whole = std::max(0.0, integral_to(depth, 1));
       if (rest >= whole) {
         rest -= whole;
