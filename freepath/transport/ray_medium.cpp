@@ -118,11 +118,9 @@ std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& pl
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) a[1][i][j] -= a[0][i][j];
   }
-  for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 2; ++j) a[i][1][j] -= a[i][0][j];
-  }
-  for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 2; ++j) a[i][j][1] -= a[i][j][0];
+  for (auto& plane : a) {
+    for (int j = 0; j < 2; ++j) plane[1][j] -= plane[0][j];
+    for (auto& row : plane) row[1] -= row[0];
   }
   const auto& [x, y, z] = place;
   const auto& [dx, dy, dz] = step;

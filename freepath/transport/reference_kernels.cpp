@@ -17,8 +17,8 @@ namespace {
 
 static_assert(ReferenceMedium<RayMedium>);
 
-template <int N>
-void count(const ReferenceFlight<N>& flight, WalkStatistics& statistics) {
+template <int kN>
+void count(const ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
   if (flight.event != Event::kEscape) {
     ++statistics.tentative_collisions;
     ++statistics.real_collisions;
@@ -30,36 +30,36 @@ void count(const ReferenceFlight<N>& flight, WalkStatistics& statistics) {
   }
 }
 
-template <int N>
-void write(const ReferenceFlight<N>& flight, std::size_t i, FlightStream& flights) {
+template <int kN>
+void write(const ReferenceFlight<kN>& flight, std::size_t i, FlightStream& flights) {
   flights.event[i] = flight.event;
   flights.component[i] = flight.component;
-  for (int channel = 0; channel < N; ++channel) {
+  for (int channel = 0; channel < kN; ++channel) {
     flights.weight[channel][i] = static_cast<float>(flight.weight[channel]);
     flights.emitted[channel][i] = static_cast<float>(flight.emitted[channel]);
   }
 }
 
-template <int N, class Method>
+template <int kN, class Method>
 void fly_stream(const MediumView& view, std::span<const float> options, const WalkModes& modes,
                 uint64_t seed, const RayStream& rays, FlightStream& flights,
                 WalkStatistics& statistics) {
-  const RayMedium medium(view, N);
+  const RayMedium medium(view, kN);
   Method method(options);
   statistics.rays += rays.size();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const RayMedium::Path path = medium.enter(
         Vec3d(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]),
         Vec3d(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]), rays.t_max[i]);
-    ReferenceFlight<N> flight;
-    for (int channel = 0; channel < N; ++channel) {
+    ReferenceFlight<kN> flight;
+    for (int channel = 0; channel < kN; ++channel) {
       flight.weight[channel] = rays.weighted() ? rays.weight[channel][i] : 1.0F;
     }
     const uint64_t before = statistics.lookups;
     if (path.length > 0) {
       flight.t = path.length;
       RandomStream random(seed, rays.pixel[i], rays.sample[i], rays.stream[i]);
-      method.template fly<N>(medium, path, modes, random, flight, statistics);
+      method.template fly<kN>(medium, path, modes, random, flight, statistics);
       count(flight, statistics);
       flights.t[i] = static_cast<float>(path.begin + flight.t);
     } else {  // a ray that misses has flown to its end

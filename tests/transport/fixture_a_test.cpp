@@ -57,7 +57,7 @@ double radiance(const FlightStream& flights, std::size_t i, int channel, int slo
 std::size_t paths_for(const Case& test) {
   const auto has = [&](const char* text) { return test.tracker.find(text) != std::string::npos; };
   if (has("=max") || has("=average")) return 3'000'000;
-  if (test.tracker == "regular" || has("ray-marching")) return 40'000;  // slow, with tame weights
+  if (test.tracker == "regular" || has("ray-marching")) return 60'000;  // slow, with tame weights
   return has("scale=0.7") ? 2'000'000 : has("spectral") ? 1'000'000 : 400'000;
 }
 

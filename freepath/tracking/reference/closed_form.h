@@ -31,11 +31,11 @@ struct ClosedForm {
 
   explicit ClosedForm(std::span<const float> /*options*/) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& modes,
-           RandomStream& random, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
+           RandomStream& random, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
     const auto densities = homogeneous_densities(medium, path, statistics);
-    const double sigma_t = mean_extinction<N>(medium, densities);
+    const double sigma_t = mean_extinction<kN>(medium, densities);
     const double tau = exponential_double(random);
     if (!(tau < sigma_t * path.length)) return;
     flight.t = tau / sigma_t;
@@ -53,12 +53,12 @@ struct ClosedFormTransmittance {
 
   explicit ClosedFormTransmittance(std::span<const float> /*options*/) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& /*modes*/,
-           RandomStream& /*random*/, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
-    const auto sigma_t = extinction<N>(medium, homogeneous_densities(medium, path, statistics));
-    double depth[N];
-    for (int channel = 0; channel < N; ++channel) depth[channel] = sigma_t[channel] * path.length;
+           RandomStream& /*random*/, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
+    const auto sigma_t = extinction<kN>(medium, homogeneous_densities(medium, path, statistics));
+    double depth[kN];
+    for (int channel = 0; channel < kN; ++channel) depth[channel] = sigma_t[channel] * path.length;
     attenuate(depth, flight);
   }
 };

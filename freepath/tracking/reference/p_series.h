@@ -38,23 +38,23 @@ struct PSeries {
   explicit PSeries(std::span<const float> options)
       : coverage(options[0]), rate_scale(options[1]), roulette(options[2]) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& /*modes*/,
-           RandomStream& random, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
-    thread_local ResidualSegments<N> residual;  // for its memory alone
+           RandomStream& random, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
+    thread_local ResidualSegments<kN> residual;  // for its memory alone
     residual.gather(medium, path, statistics);
     attenuate(residual.control_depth(), flight);
     const double depth = residual.depth() * rate_scale;
     if (flight.event != Event::kEscape || !(depth > 0)) return;
-    double product[N];
-    double sum[N];
-    std::fill(product, product + N, 1.0);
-    std::fill(sum, sum + N, std::exp(-depth));
+    double product[kN];
+    double sum[kN];
+    std::fill(product, product + kN, 1.0);
+    std::fill(sum, sum + kN, std::exp(-depth));
     Orders orders(depth, coverage);
     while (orders.next(random)) {
       multiply(medium, path, residual, random, product, statistics);
       if (!survives(product, random)) break;
-      for (int channel = 0; channel < N; ++channel) {
+      for (int channel = 0; channel < kN; ++channel) {
         sum[channel] += orders.weight() * product[channel];
       }
     }
@@ -101,21 +101,21 @@ struct PSeries {
   };
 
   /// Draws a point and multiplies by 1 - mu^r/rate there.
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void multiply(const Medium& medium, const typename Medium::Path& path,
-                const ResidualSegments<N>& residual, RandomStream& random, double (&product)[N],
+                const ResidualSegments<kN>& residual, RandomStream& random, double (&product)[kN],
                 WalkStatistics& statistics) const {
     const auto point = residual.at_depth(uniform_double(random) * residual.depth());
-    const auto sigma_t = extinction<N>(medium, medium.densities(path, point.t, random));
+    const auto sigma_t = extinction<kN>(medium, medium.densities(path, point.t, random));
     statistics.lookups += static_cast<uint64_t>(medium.component_count());
-    for (int channel = 0; channel < N; ++channel) {
+    for (int channel = 0; channel < kN; ++channel) {
       product[channel] *=
           1 - (sigma_t[channel] - point.control[channel]) / (point.rate * rate_scale);
     }
   }
 
-  template <int N>
-  bool survives(double (&product)[N], RandomStream& random) const {
+  template <int kN>
+  bool survives(double (&product)[kN], RandomStream& random) const {
     double largest = 0;
     for (const double value : product) largest = std::max(largest, std::abs(value));
     if (largest == 0) return false;

@@ -30,9 +30,9 @@ struct RayMarching {
 
   explicit RayMarching(std::span<const float> options) : step_option(options[0]) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& modes,
-           RandomStream& random, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
+           RandomStream& random, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
     const double step = step_option > 0 ? double(step_option) : 0.5 * path.voxel_length;
     double rest = exponential_double(random);
     const double jitter = uniform_double(random);
@@ -50,7 +50,7 @@ struct RayMarching {
       for (; number * step < path.length && point(number) < segment.end; ++number) {
         const auto densities = medium.densities(path, point(number), random);
         statistics.lookups += static_cast<uint64_t>(medium.component_count());
-        const double depth = mean_extinction<N>(medium, densities) * width(number);
+        const double depth = mean_extinction<kN>(medium, densities) * width(number);
         if (rest < depth) {
           flight.t = number * step + width(number) * (rest / depth);
           collide(medium, densities, modes, random, flight);

@@ -10,13 +10,13 @@
 namespace freepath {
 
 /// What a method fills in; it comes with the ray's weights and the end of the medium in it.
-template <int N>
+template <int kN>
 struct ReferenceFlight {
   double t = 0;  ///< Distance from where the ray enters the medium [world].
   Event event = Event::kEscape;
   uint8_t component = 0;
-  double weight[N];
-  double emitted[N] = {};
+  double weight[kN];
+  double emitted[kN] = {};
 };
 
 /// exp(-depth) is 0 beyond, for any weight that a float can hold.
@@ -36,10 +36,10 @@ inline double exponential_double(RandomStream& random) {
 }
 
 /// Multiplies the weights, which ends a flight of which nothing is left.
-template <int N>
-void scale(const double (&factor)[N], ReferenceFlight<N>& flight) {
+template <int kN>
+void scale(const double (&factor)[kN], ReferenceFlight<kN>& flight) {
   bool left = false;
-  for (int channel = 0; channel < N; ++channel) {
+  for (int channel = 0; channel < kN; ++channel) {
     flight.weight[channel] *= factor[channel];
     left = left || static_cast<float>(flight.weight[channel]) != 0;
   }
@@ -47,10 +47,10 @@ void scale(const double (&factor)[N], ReferenceFlight<N>& flight) {
 }
 
 /// Multiplies the weights by exp(-depth).
-template <int N>
-void attenuate(const double (&depth)[N], ReferenceFlight<N>& flight) {
-  double factor[N];
-  for (int channel = 0; channel < N; ++channel) factor[channel] = std::exp(-depth[channel]);
+template <int kN>
+void attenuate(const double (&depth)[kN], ReferenceFlight<kN>& flight) {
+  double factor[kN];
+  for (int channel = 0; channel < kN; ++channel) factor[channel] = std::exp(-depth[channel]);
   scale(factor, flight);
 }
 

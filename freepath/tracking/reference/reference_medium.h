@@ -35,13 +35,13 @@ concept ReferenceMedium = requires(const M& medium, const typename M::Path& path
 };
 
 /// Extinction of each channel [1/m].
-template <int N, ReferenceMedium Medium>
-std::array<double, N> extinction(const Medium& medium,
-                                 const typename Medium::Densities& densities) {
-  std::array<double, N> sigma_t{};
+template <int kN, ReferenceMedium Medium>
+std::array<double, kN> extinction(const Medium& medium,
+                                  const typename Medium::Densities& densities) {
+  std::array<double, kN> sigma_t{};
   for (int k = 0; k < medium.component_count(); ++k) {
     const auto& component = medium.component(k);
-    for (int channel = 0; channel < N; ++channel) {
+    for (int channel = 0; channel < kN; ++channel) {
       sigma_t[channel] +=
           densities[k] * (double(component.sigma_a[channel]) + component.sigma_s[channel]);
     }
@@ -50,11 +50,11 @@ std::array<double, N> extinction(const Medium& medium,
 }
 
 /// Mean of the extinction over channels [1/m]; free paths ask for it where all channels share one.
-template <int N, ReferenceMedium Medium>
+template <int kN, ReferenceMedium Medium>
 double mean_extinction(const Medium& medium, const typename Medium::Densities& densities) {
   double sum = 0;
-  for (const double sigma_t : extinction<N>(medium, densities)) sum += sigma_t;
-  return sum / N;
+  for (const double sigma_t : extinction<kN>(medium, densities)) sum += sigma_t;
+  return sum / kN;
 }
 
 }  // namespace freepath

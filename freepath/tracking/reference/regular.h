@@ -29,13 +29,13 @@ void visit_cells(const Medium& medium, const typename Medium::Path& path,
 }
 
 /// Mean over channels of each component's extinction per unit of density [1/m].
-template <int N, ReferenceMedium Medium>
+template <int kN, ReferenceMedium Medium>
 typename Medium::Densities mean_cross_sections(const Medium& medium) {
   typename Medium::Densities sigma_t{};
   for (int k = 0; k < medium.component_count(); ++k) {
     typename Medium::Densities one{};
     one[k] = 1;
-    sigma_t[k] = mean_extinction<N>(medium, one);
+    sigma_t[k] = mean_extinction<kN>(medium, one);
   }
   return sigma_t;
 }
@@ -54,14 +54,14 @@ Cubic depth_along(const Medium& medium, const typename Medium::Cell& cell,
 }
 
 /// Densities at a place of a cell; their means over it where rounding has left nothing there.
-template <int N, ReferenceMedium Medium>
+template <int kN, ReferenceMedium Medium>
 typename Medium::Densities densities_in(const Medium& medium, const typename Medium::Cell& cell,
                                         double s) {
   typename Medium::Densities densities{};
   for (int k = 0; k < medium.component_count(); ++k) {
     densities[k] = std::max(0.0, value_at(cell.density[k], s));
   }
-  if (mean_extinction<N>(medium, densities) > 0) return densities;
+  if (mean_extinction<kN>(medium, densities) > 0) return densities;
   for (int k = 0; k < medium.component_count(); ++k) {
     densities[k] = std::max(0.0, integral_to(cell.density[k], 1));
   }
@@ -81,10 +81,10 @@ struct Regular {
 
   explicit Regular(std::span<const float> /*options*/) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& modes,
-           RandomStream& random, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
-    const auto sigma_t = mean_cross_sections<N>(medium);
+           RandomStream& random, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
+    const auto sigma_t = mean_cross_sections<kN>(medium);
     double rest = exponential_double(random);
     visit_cells(medium, path, statistics, [&](const typename Medium::Cell& cell) {
       const Cubic depth = depth_along(medium, cell, sigma_t);
@@ -95,7 +95,7 @@ struct Regular {
       }
       const double s = invert_integral(depth, rest);
       flight.t = cell.begin + s * (cell.end - cell.begin);
-      collide(medium, densities_in<N>(medium, cell, s), modes, random, flight);
+      collide(medium, densities_in<kN>(medium, cell, s), modes, random, flight);
       return false;
     });
   }
@@ -113,18 +113,18 @@ struct RegularTransmittance {
 
   explicit RegularTransmittance(std::span<const float> /*options*/) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& /*modes*/,
-           RandomStream& /*random*/, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
-    double depth[N] = {};
+           RandomStream& /*random*/, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
+    double depth[kN] = {};
     visit_cells(medium, path, statistics, [&](const typename Medium::Cell& cell) {
       bool left = false;
       typename Medium::Densities mean{};
       for (int k = 0; k < medium.component_count(); ++k) {
         mean[k] = std::max(0.0, integral_to(cell.density[k], 1));
       }
-      const auto sigma_t = extinction<N>(medium, mean);
-      for (int channel = 0; channel < N; ++channel) {
+      const auto sigma_t = extinction<kN>(medium, mean);
+      for (int channel = 0; channel < kN; ++channel) {
         depth[channel] += sigma_t[channel] * (cell.end - cell.begin);
         left = left || depth[channel] < kOpaque;
       }

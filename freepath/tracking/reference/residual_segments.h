@@ -14,14 +14,14 @@ namespace freepath {
 /// Transmittance is exp(-control) times that of the residual, mu_t minus the minimum of the
 /// super-voxel. This holds the control's optical depth, and the segments in which a residual may be
 /// left, with its bound: the rate.
-template <int N>
+template <int kN>
 class ResidualSegments {
  public:
   /// A point of the residual part.
   struct Point {
     double t;     ///< [world], from where the ray enters the medium
     double rate;  ///< Largest residual extinction of any channel here, as bounded [1/m].
-    std::span<const double, N> control;  ///< Minimum of the extinction here [1/m].
+    std::span<const double, kN> control;  ///< Minimum of the extinction here [1/m].
   };
 
   /// Replaces the contents by the segments of a path.
@@ -29,7 +29,7 @@ class ResidualSegments {
   void gather(const Medium& medium, const typename Medium::Path& path, WalkStatistics& statistics) {
     pieces_.clear();
     length_ = depth_ = 0;
-    std::fill(control_depth_, control_depth_ + N, 0.0);
+    std::fill(control_depth_, control_depth_ + kN, 0.0);
     auto segments = medium.segments(path);
     typename Medium::Segment segment;
     while (segments.next(segment)) {
@@ -39,7 +39,7 @@ class ResidualSegments {
   }
 
   /// Optical depth of the minima.
-  const double (&control_depth() const)[N] { return control_depth_; }
+  const double (&control_depth() const)[kN] { return control_depth_; }
   /// Length over which there is a residual [world].
   double length() const { return length_; }
   /// Optical depth by the rate: what the residual's is at most.
@@ -63,16 +63,16 @@ class ResidualSegments {
     double length_before;
     double depth_before;
     double rate;
-    std::array<double, N> control;
+    std::array<double, kN> control;
   };
 
   template <ReferenceMedium Medium>
   void add(const Medium& medium, const typename Medium::Segment& segment) {
     const double length = segment.end - segment.begin;
-    const auto most = extinction<N>(medium, segment.maximum);
-    const auto least = extinction<N>(medium, segment.minimum);
+    const auto most = extinction<kN>(medium, segment.maximum);
+    const auto least = extinction<kN>(medium, segment.minimum);
     double rate = 0;
-    for (int channel = 0; channel < N; ++channel) {
+    for (int channel = 0; channel < kN; ++channel) {
       control_depth_[channel] += least[channel] * length;
       rate = std::max(rate, most[channel] - least[channel]);
     }
@@ -94,7 +94,7 @@ class ResidualSegments {
   }
 
   std::vector<Piece> pieces_;
-  double control_depth_[N] = {};
+  double control_depth_[kN] = {};
   double length_ = 0;
   double depth_ = 0;
 };

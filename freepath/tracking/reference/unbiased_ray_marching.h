@@ -45,10 +45,10 @@ class UnbiasedRayMarching {
   explicit UnbiasedRayMarching(std::span<const float> options)
       : order_zero_(options[0]), orders_(options[1]), points_scale_(options[2]) {}
 
-  template <int N, ReferenceMedium Medium>
+  template <int kN, ReferenceMedium Medium>
   void fly(const Medium& medium, const typename Medium::Path& path, const WalkModes& /*modes*/,
-           RandomStream& random, ReferenceFlight<N>& flight, WalkStatistics& statistics) {
-    thread_local ResidualSegments<N> residual;  // for its memory alone
+           RandomStream& random, ReferenceFlight<kN>& flight, WalkStatistics& statistics) {
+    thread_local ResidualSegments<kN> residual;  // for its memory alone
     residual.gather(medium, path, statistics);
     attenuate(residual.control_depth(), flight);
     if (flight.event != Event::kEscape || !(residual.depth() > 0)) return;
@@ -61,16 +61,16 @@ class UnbiasedRayMarching {
       const double spacing = residual.length() / points;
       for (int point = 0; point < points; ++point) {
         const auto place = residual.at_length((point + jitter) * spacing);
-        const auto sigma_t = extinction<N>(medium, medium.densities(path, place.t, random));
-        for (int channel = 0; channel < N; ++channel) {
+        const auto sigma_t = extinction<kN>(medium, medium.densities(path, place.t, random));
+        for (int channel = 0; channel < kN; ++channel) {
           estimates_[channel][i] -= (sigma_t[channel] - place.control[channel]) * spacing;
         }
       }
     }
     statistics.lookups +=
         count * static_cast<uint64_t>(points) * static_cast<uint64_t>(medium.component_count());
-    double passed[N];
-    for (int channel = 0; channel < N; ++channel) passed[channel] = combine(estimates_[channel]);
+    double passed[kN];
+    for (int channel = 0; channel < kN; ++channel) passed[channel] = combine(estimates_[channel]);
     scale(passed, flight);
   }
 
