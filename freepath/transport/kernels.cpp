@@ -37,6 +37,7 @@ HWY_AFTER_NAMESPACE();
 #include <array>
 
 #include "freepath/base/error.h"
+#include "freepath/transport/reference_kernels.h"
 
 namespace freepath {
 namespace {
@@ -60,6 +61,16 @@ constexpr Target kTargets[] = {
 #endif
     {Simd::kOneLane, "one-lane", HWY_STATIC_TARGET, &HWY_STATIC_DISPATCH(make_table)},
 };
+
+/// The walks of a target, and after them the methods that are the same for all targets.
+KernelTable full_table(const Target& target) {
+  KernelTable table = target.make();
+  const KernelTable reference = make_reference_kernels();
+  table.trackers.insert(table.trackers.end(), reference.trackers.begin(), reference.trackers.end());
+  table.transmittance.insert(table.transmittance.end(), reference.transmittance.begin(),
+                             reference.transmittance.end());
+  return table;
+}
 
 bool runs_here(const Target& target) { return (hwy::SupportedTargets() & target.bit) != 0; }
 
@@ -94,7 +105,7 @@ std::string_view to_string(Simd simd) {
 const KernelTable& kernels(Simd simd) {
   static const std::array<KernelTable, std::size(kTargets)> kTables = [] {
     std::array<KernelTable, std::size(kTargets)> tables;
-    for (std::size_t i = 0; i < tables.size(); ++i) tables[i] = kTargets[i].make();
+    for (std::size_t i = 0; i < tables.size(); ++i) tables[i] = full_table(kTargets[i]);
     return tables;
   }();
   const Simd wanted = simd == Simd::kBest ? available_simd().front() : simd;

@@ -31,6 +31,8 @@ struct Kernel {
   MethodInfo info;
   WalkFunction one_channel = nullptr;
   WalkFunction all_channels = nullptr;
+  /// Throws Error if the method can't walk this medium; null where it can walk any.
+  void (*check)(const Medium& medium, Interpolation interpolation) = nullptr;
 };
 
 /// All methods of one target, in the order of the registry.

@@ -59,6 +59,9 @@ Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
   transmittance_.method = parse_method(settings.transmittance, transmittance_infos());
   const Kernel& tracker = find(table.trackers, tracker_.method.name);
   const Kernel& transmittance = find(table.transmittance, transmittance_.method.name);
+  for (const Kernel* kernel : {&tracker, &transmittance}) {
+    if (kernel->check != nullptr) kernel->check(medium, settings.interpolation);
+  }
   const bool one = channels_ == 1;
   tracker_.function = one ? tracker.one_channel : tracker.all_channels;
   // One extinction for all channels makes one transmittance.

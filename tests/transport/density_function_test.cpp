@@ -55,6 +55,17 @@ RayStream rays_through(std::size_t count) {
   return repeat_ray(Vec3f(-1, 0.3F, 0.2F), Vec3f(1, 0, 0), kInfinity, count);
 }
 
+/// Methods that go from voxel to voxel refuse computed densities. @return whether this one has to
+bool refuses(const Medium& medium, const WalkSettings& settings, std::string_view name) {
+  for (const char* reference :
+       {"closed-form", "regular", "ray-marching", "p-series", "unbiased-ray-marching"}) {
+    if (name != reference) continue;
+    EXPECT_THROW(Walker(medium, settings, 0), Error) << name;
+    return true;
+  }
+  return false;
+}
+
 TEST(DensityFunction, EveryTrackerEscapesAsOftenAsItsIntegralSays) {
   const Spectrum sigma_a(0.2F, 0.1F, 0.5F);
   const Spectrum sigma_s(0.8F, 0.4F, 0.7F);
@@ -64,6 +75,8 @@ TEST(DensityFunction, EveryTrackerEscapesAsOftenAsItsIntegralSays) {
     WalkSettings settings;
     settings.tracker = info.name;
     settings.absorption = Absorption::kAnalog;
+    settings.interpolation = Interpolation::kNearest;
+    if (refuses(medium, settings, info.name)) continue;
     const bool shared = shares_paths(medium, settings);
     for (int turn = 0; turn < (shared ? 1 : kChannels); ++turn) {
       const Walker walker(medium, settings, shared ? Walker::kAllChannels : turn);
@@ -89,6 +102,8 @@ TEST(DensityFunction, EveryEstimatorFindsItsTransmittance) {
   for (const MethodInfo& info : transmittance_infos()) {
     WalkSettings settings;
     settings.transmittance = info.name;
+    settings.interpolation = Interpolation::kNearest;
+    if (refuses(medium, settings, info.name)) continue;
     const FlightStream flights = estimate_transmittance(medium, rays_through(kRays), settings);
     RunningStatistics transmittance;
     for (std::size_t i = 0; i < kRays; ++i) transmittance.add(flights.weight[0][i]);

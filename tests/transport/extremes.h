@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -85,6 +86,11 @@ inline void expect_to_end(const std::function<void()>& check) {
       ::testing::ExitedWithCode(0), "");
 }
 
+/// Methods that put the density inside an exponential.
+inline bool refuses_stochastic(std::string_view tracker) {
+  return tracker == "regular" || tracker == "ray-marching";
+}
+
 /// Walks the rays by every method, interpolation and target; checks that flights are sane, and what
 /// else `check(flights, i, transmittance)` asks of each.
 inline void with_every_method(
@@ -93,10 +99,15 @@ inline void with_every_method(
   constexpr const char* kMethods[][2] = {{"delta", "delta"},
                                          {"weighted-delta", "ratio"},
                                          {"weighted-delta:rate-scale=0.7", "ratio:roulette=0"},
-                                         {"weighted-delta:rate-scale=2", "ratio:rate-scale=3"}};
+                                         {"weighted-delta:rate-scale=2", "ratio:rate-scale=3"},
+                                         {"regular", "regular"},
+                                         {"ray-marching", "p-series:rate-scale=0.7"},
+                                         {"delta", "p-series"},
+                                         {"delta", "unbiased-ray-marching"}};
   for (const Simd simd : available_simd()) {
     for (const Interpolation interpolation : kInterpolations) {
       for (const auto& [tracker, estimator] : kMethods) {
+        if (interpolation == Interpolation::kStochastic && refuses_stochastic(tracker)) continue;
         SCOPED_TRACE(std::string(to_string(simd)) + ", " + name_of(interpolation) + ", " + tracker +
                      ", " + estimator);
         WalkSettings settings;

@@ -50,7 +50,8 @@ TEST(Extremes, AMillionthOfAMeanFreePathLetsEverythingPass) {
   with_every_method(medium_of(box_field(), 1e-6F / 24), list.finish(),
                     [](const FlightStream& flights, std::size_t i, bool) {
                       EXPECT_EQ(flights.event[i], Event::kEscape);
-                      EXPECT_EQ(flights.weight[0][i], 1);
+                      // The longest way is the diagonal: 25 √3 voxels with the filter's border.
+                      EXPECT_NEAR(flights.weight[0][i], 1, 2e-6);
                     });
 }
 

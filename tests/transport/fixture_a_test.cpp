@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -56,7 +57,14 @@ double radiance(const FlightStream& flights, std::size_t i, int channel, int slo
 std::size_t paths_for(const Case& test) {
   const auto has = [&](const char* text) { return test.tracker.find(text) != std::string::npos; };
   if (has("=max") || has("=average")) return 3'000'000;
+  if (test.tracker == "regular" || has("ray-marching")) return 60'000;  // slow, with tame weights
   return has("scale=0.7") ? 2'000'000 : has("spectral") ? 1'000'000 : 400'000;
+}
+
+/// The same for transmittances.
+std::size_t paths_for_transmittance(const std::string& method) {
+  if (method == "regular") return 10;  // without variance
+  return method == "p-series" || method == "unbiased-ray-marching" ? 100'000 : 600'000;
 }
 
 struct FixtureResult {
@@ -73,12 +81,13 @@ FixtureResult estimate_radiance(const Medium& medium, const WalkSettings& settin
   for (int turn = 0; turn < (shared ? 1 : kChannels); ++turn) {
     const Walker walker(medium, settings, shared ? Walker::kAllChannels : turn);
     for (std::size_t done = 0; done < paths; done += kBatch) {
+      const std::size_t count = std::min(kBatch, paths - done);
       const RayStream rays =
-          repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, kBatch, static_cast<uint32_t>(done));
+          repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, count, static_cast<uint32_t>(done));
       walker.free_paths(rays, flights, result.walk);
       for (int slot = 0; slot < walker.channels(); ++slot) {
         const int channel = shared ? slot : turn;
-        for (std::size_t i = 0; i < kBatch; ++i) {
+        for (std::size_t i = 0; i < count; ++i) {
           result.radiance[channel].add(radiance(flights, i, channel, slot, planted));
         }
       }
@@ -87,10 +96,15 @@ FixtureResult estimate_radiance(const Medium& medium, const WalkSettings& settin
   return result;
 }
 
+/// What can only be right in another medium, or is known to be wrong with its standard options.
+bool applies(const MethodInfo& info) { return info.name != "closed-form" && !info.biased; }
+
 /// Every tracker of the registry, and the options that change its law.
 std::vector<std::string> tracker_variants() {
   std::vector<std::string> variants;
-  for (const MethodInfo& info : tracker_infos()) variants.emplace_back(info.name);
+  for (const MethodInfo& info : tracker_infos()) {
+    if (applies(info)) variants.emplace_back(info.name);
+  }
   for (const char* variant :
        {"weighted-delta:rate-scale=0.7", "weighted-delta:rate-scale=2",
         "weighted-delta:energy-partitioning=yes", "weighted-decomposition:control=1.3",
@@ -100,7 +114,8 @@ std::vector<std::string> tracker_variants() {
         "spectral-decomposition:collision-probability=average",
         "spectral-decomposition:collision-probability=history-max,control=1.3",
         "spectral-decomposition:control=1.3,rate-scale=0.7",
-        "hero-wavelength:selection=throughput-albedo"}) {
+        "hero-wavelength:selection=throughput-albedo",
+        "ray-marching:step=0.002"}) {  // steps so short that the bias is far below the error
     variants.emplace_back(variant);
   }
   return variants;
@@ -194,7 +209,9 @@ TEST(FixtureA, EveryEstimatorReproducesTheTransmittance) {
       "ratio:roulette=0",          "ratio:rate-scale=0.7",          "ratio:rate-scale=3",
       "residual-ratio:roulette=0", "residual-ratio:rate-scale=0.7", "next-flight:roulette=0",
       "next-flight:rate-scale=0.7"};
-  for (const MethodInfo& info : transmittance_infos()) methods.emplace_back(info.name);
+  for (const MethodInfo& info : transmittance_infos()) {
+    if (applies(info)) methods.emplace_back(info.name);
+  }
   const double threshold = family_wise_threshold(1e-3, methods.size() * 6);
   for (const std::string& method : methods) {
     for (const char* tracker : {"delta", "spectral"}) {  // one channel, and all of one path
@@ -207,12 +224,14 @@ TEST(FixtureA, EveryEstimatorReproducesTheTransmittance) {
         std::array<RunningStatistics, kChannels> result;
         WalkStatistics statistics;
         FlightStream flights;
-        for (std::size_t done = 0; done < 600'000; done += kBatch) {
+        const std::size_t paths = paths_for_transmittance(method);
+        for (std::size_t done = 0; done < paths; done += kBatch) {
+          const std::size_t count = std::min(kBatch, paths - done);
           walker.transmittance(
-              repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, kBatch, static_cast<uint32_t>(done)),
+              repeat_ray(Vec3f(-1, 0, 0), Vec3f(1, 0, 0), 10, count, static_cast<uint32_t>(done)),
               flights, statistics);
           for (int slot = 0; slot < walker.transmittance_channels(); ++slot) {
-            for (std::size_t i = 0; i < kBatch; ++i) result[slot].add(flights.weight[slot][i]);
+            for (std::size_t i = 0; i < count; ++i) result[slot].add(flights.weight[slot][i]);
           }
         }
         for (int slot = 0; slot < walker.transmittance_channels(); ++slot) {

@@ -39,6 +39,9 @@ std::vector<DistanceCase> distance_cases() {
     cases.push_back({"weighted-delta:rate-scale=0.7", 1, interpolation, Simd::kBest, 2'400'000});
     cases.push_back({"weighted-delta:rate-scale=2", 2, interpolation, Simd::kBest, 1'200'000});
     cases.push_back({"weighted-delta:rate-scale=0.7", 2, interpolation, Simd::kOneLane, 200'000});
+    if (interpolation == Interpolation::kStochastic) continue;  // which regular tracking refuses
+    cases.push_back({"regular", 1, interpolation, Simd::kBest, 1'200'000});
+    cases.push_back({"regular", 2, interpolation, Simd::kBest, 400'000});
   }
   return cases;
 }
@@ -134,7 +137,9 @@ TEST(FreePaths, OnePercentOfTheExtinctionMovesThem) {
   const std::vector<DistanceCase> cases = distance_cases();
   const double level = family_wise_level(1e-3, cases.size());
   for (const DistanceCase& test : cases) {
-    if (test.simd != Simd::kBest || test.interpolation != Interpolation::kStochastic) continue;
+    const bool sharp = test.simd == Simd::kBest && test.paths > 1'000'000;
+    const bool regular = test.tracker == std::string_view("regular");
+    if (!sharp || (test.interpolation != Interpolation::kStochastic && !regular)) continue;
     EXPECT_FALSE(check_chi_square(describe(test), test_distances(test, 1.01), level))
         << describe(test);
   }
@@ -159,12 +164,14 @@ struct EventCase {
 std::vector<EventCase> event_cases() {
   std::vector<EventCase> cases;
   for (const char* tracker : {"delta", "weighted-delta", "weighted-delta:rate-scale=0.7",
-                              "weighted-delta:rate-scale=2"}) {
+                              "weighted-delta:rate-scale=2", "regular"}) {
     for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
       for (const EmissionTally emission : {EmissionTally::kCollision, EmissionTally::kAnalog}) {
         const bool heavy = std::string_view(tracker).find("0.7") != std::string_view::npos;
         const std::size_t paths = heavy ? 1'600'000 : 800'000;
-        const Interpolation interpolation = kInterpolations[cases.size() / 2 % 3];
+        // Regular tracking refuses the third.
+        const int choices = std::string_view(tracker) == "regular" ? 2 : 3;
+        const Interpolation interpolation = kInterpolations[cases.size() / 2 % choices];
         cases.push_back(
             {tracker, absorption, emission, interpolation, Walker::kAllChannels, paths});
         cases.push_back({tracker, absorption, emission, interpolation, 1, paths / 4});

@@ -1,0 +1,105 @@
+#pragma once
+/// @file A medium as one ray meets it: the ReferenceMedium of tracking/reference/ over a
+/// MediumView.
+
+#include <array>
+#include <vector>
+
+#include "freepath/base/random.h"
+#include "freepath/base/vector.h"
+#include "freepath/media/medium_view.h"
+#include "freepath/transport/grid_steps.h"
+
+namespace freepath {
+
+/// Borrows the view's arrays. Components without cross sections in the channels of the walk are
+/// left out.
+class RayMedium {
+ public:
+  using Densities = std::array<double, Medium::kMaxComponents>;
+
+  /// The part of a ray inside the medium. It begins at the ray's origin or where it meets the
+  /// bounds, so that a distant camera costs no precision inside.
+  struct Path {
+    Vec3d origin;             ///< [voxels] from the corner of the index's first voxel
+    Vec3d direction;          ///< [voxels per world unit]
+    double begin = 0;         ///< Where it enters the medium [world].
+    double length = 0;        ///< From there to its end [world]; 0 if it misses.
+    double voxel_length = 0;  ///< Way in which it passes an edge length of a voxel [world].
+  };
+
+  /// The part of a path in one super-voxel, or in one empty cube of them.
+  struct Segment {
+    double begin = 0;
+    double end = 0;
+    bool empty = true;  ///< Whether every density is 0.
+    Densities minimum{};
+    Densities maximum{};
+  };
+
+  /// The part of a path in one voxel (nearest), or between eight voxel centres (trilinear).
+  struct Cell {
+    double begin = 0;
+    double end = 0;
+    /// Of each component: Σ_j density[j] s^j with s from 0 to 1 along the part. Without
+    /// interpolation next() sets density[0] alone, and the others stay 0.
+    std::array<std::array<double, 4>, Medium::kMaxComponents> density{};
+  };
+
+  class Segments {
+   public:
+    Segments(const RayMedium& medium, const Path& path);
+    /// @return whether there was another segment
+    bool next(Segment& segment);
+
+   private:
+    const RayMedium& medium_;
+    GridSteps steps_;
+  };
+
+  class Cells {
+   public:
+    Cells(const RayMedium& medium, const Path& path, double begin, double end);
+    /// @return whether there was another cell
+    bool next(Cell& cell);
+
+   private:
+    const RayMedium& medium_;
+    const Path& path_;
+    GridSteps steps_;
+  };
+
+  /// @param channels 1, or kChannels
+  RayMedium(const MediumView& view, int channels);
+
+  /// A ray that misses, that has no direction, or whose numbers are not finite gets length 0.
+  /// @param origin,direction,t_max [world]
+  Path enter(const Vec3d& origin, const Vec3d& direction, double t_max) const;
+
+  int component_count() const { return static_cast<int>(numbers_.size()); }
+  int number(int k) const { return numbers_[k]; }
+  const ComponentView& component(int k) const { return view_.components[numbers_[k]]; }
+
+  Segments segments(const Path& path) const { return {*this, path}; }
+  Cells cells(const Path& path, double begin, double end) const {
+    return {*this, path, begin, end};
+  }
+
+  /// Densities at a distance from where the path begins; stochastic interpolation draws one tap for
+  /// all components.
+  Densities densities(const Path& path, double t, RandomStream& random) const;
+
+ private:
+  /// Value of a voxel, counted from the first of the index.
+  double voxel(int k, const Vec3i& place) const;
+  /// The nearest voxel that has a next one along every axis within the index.
+  Vec3i inside(Vec3i voxel) const;
+  /// Density between the eight voxels from `base` on, along place + s · step, s in [0,1].
+  std::array<double, 4> cubic(int k, const Vec3i& base, const Vec3d& place,
+                              const Vec3d& step) const;
+
+  MediumView view_;
+  std::vector<int> numbers_;  ///< Of the components that count.
+};
+
+}  // namespace freepath
