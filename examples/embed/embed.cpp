@@ -72,7 +72,8 @@ int main(int argc, char** argv) try {
     return {std::exp(-farthest.length2()), std::exp(-nearest.length2())};
   };
   const Box3f box(Vec3f(-2), Vec3f(2));
-  sample("gaussian", Medium({{.density = make_function_field("gaussian", {gaussian, bounds, box})}}));
+  sample("gaussian",
+         Medium({{.density = make_function_field("gaussian", {gaussian, bounds, box})}}));
   return 0;
 } catch (const Error& error) {
   std::fprintf(stderr, "embed: %s\n", error.what());

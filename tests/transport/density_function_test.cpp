@@ -46,9 +46,8 @@ DensityFunction wave() {
 }
 
 Medium wave_medium(const Spectrum& sigma_a, const Spectrum& sigma_s) {
-  return Medium({{.density = make_function_field("wave", wave()),
-                  .sigma_a = sigma_a,
-                  .sigma_s = sigma_s}});
+  return Medium(
+      {{.density = make_function_field("wave", wave()), .sigma_a = sigma_a, .sigma_s = sigma_s}});
 }
 
 RayStream rays_through(std::size_t count) {
