@@ -10,7 +10,6 @@
 #include <limits>
 
 using namespace freepath;
-
 namespace {
 
 /// Parallel rays along +x that cross the middle of a box.
