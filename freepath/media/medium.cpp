@@ -128,10 +128,10 @@ void Medium::build_from_voxels(int super_voxel) {
   std::vector<const BrickMap*> densities;
   std::vector<float> extinction;
   const Matrix4d& index_to_world = components_[0].density->index_to_world;
-  for (std::size_t k = 0; k < components_.size(); ++k) {
-    densities.push_back(&components_[k].density->voxels);
+  for (const Component& component : components_) {
+    densities.push_back(&component.density->voxels);
     extinction.push_back(
-        static_cast<float>(largest(components_[k].sigma_t()) * voxel_edge(index_to_world)));
+        static_cast<float>(largest(component.sigma_t()) * voxel_edge(index_to_world)));
   }
   const Vec3i& bricks = densities[0]->brick_counts();
   if (std::max({bricks.x, bricks.y, bricks.z}) > kMaxBricksAlongAxis) {
