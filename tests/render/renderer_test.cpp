@@ -47,7 +47,7 @@ Camera camera_for(const Medium& medium, int width, int height) {
 }
 
 /// What a busy or instrumented machine may add to a time.
-constexpr double kSecondsForSlowMachines = 2;
+constexpr double kSecondsForSlowMachines = 20.0;
 
 Lights constant_light(float radiance) { return Lights(ConstantEnvironment(Spectrum(radiance))); }
 
