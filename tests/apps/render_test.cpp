@@ -231,9 +231,9 @@ TEST_F(RenderTest, UpTurnsTheFramedView) {
 
 TEST_F(RenderTest, AVolumeFarAwayIsFramedAndRenderedAsOneNearby) {
   write_cube(path("far.vdb"), ball, eighths() * Matrix4d().setTranslation(Vec3d(1e9, -1e9, 1e6)));
-  for (const std::string volume : {"ball", "far"}) {
-    const Outcome outcome = run("render " + volume + ".vdb -o " + volume +
-                                ".exr --size 24x16 --spp 64 --density-scale 2");
+  for (const char* files : {"ball.vdb -o ball.exr", "far.vdb -o far.exr"}) {
+    const Outcome outcome =
+        run(std::string("render --size 24x16 --spp 64 --density-scale 2 ") + files);
     EXPECT_EQ(outcome.status, 0) << outcome;
   }
   const Image near = read_image(path("ball.exr"));
