@@ -1,5 +1,4 @@
-// freepath: the program. Parses the command line, runs one subcommand and turns an error into one
-// line on standard error and a non-zero exit status.
+#include "apps/freepath/run.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 
+namespace freepath::program {
 namespace {
 
 /// What is wrong with the command line, in the form of all errors.
@@ -41,14 +41,13 @@ void refuse_empty_values(CLI::App& program) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int run(int argc, const char* const* argv) {
   CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
-  program.set_version_flag("--version", freepath::version());
+  program.set_version_flag("--version", version());
   program.require_subcommand(1);
   program.failure_message(usage_message);
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   program.footer("freepath COMMAND --help explains a command, with examples.");
-  using namespace freepath::program;
   add_render_command(program);
   add_info_command(program);
   add_generate_command(program);
@@ -59,7 +58,7 @@ int main(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error);
-  } catch (const freepath::Error& error) {
+  } catch (const Error& error) {
     fmt::print(stderr, "freepath: error: {}\n", error.what());
     return 1;
   } catch (const std::bad_alloc&) {
@@ -71,3 +70,5 @@ int main(int argc, char** argv) {
   }
   return 0;
 }
+
+}  // namespace freepath::program
