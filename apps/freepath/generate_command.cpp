@@ -52,6 +52,7 @@ void run(Options& options) {
     fail("{}: a volume is written as OpenVDB; give the file a name that ends in .vdb",
          options.output);
   }
+  check_vdb_place(options.output);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) options.volume.progress = show_progress;
   const std::vector<Field> fields = kGenerators.at(options.kind)(options.volume);

@@ -100,9 +100,7 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
 
 }  // namespace
 
-void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
-               const VdbWriteOptions& options) {
-  if (fields.empty()) fail("{}: there is no field to write", path.string());
+void check_vdb_place(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path)) {
     fail("{}: is a directory; name the file to write", path.string());
   }
@@ -110,6 +108,12 @@ void write_vdb(const std::filesystem::path& path, std::span<const Field* const> 
   if (!folder.empty() && !std::filesystem::is_directory(folder)) {
     fail("{}: can't be written: there is no folder {}", path.string(), folder.string());
   }
+}
+
+void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
+               const VdbWriteOptions& options) {
+  if (fields.empty()) fail("{}: there is no field to write", path.string());
+  check_vdb_place(path);
   openvdb::initialize();
   const PartialFile partial(name_beside(path));
   try {

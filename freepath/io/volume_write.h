@@ -12,6 +12,11 @@ struct VdbWriteOptions {
   bool half = false;  ///< Store values in half precision: half the size, 11 significant bits.
 };
 
+/// Checks, before the work is done, that a file could stand there: its folder exists, and it is
+/// none itself.
+/// @throws Error that names the file
+void check_vdb_place(const std::filesystem::path& path);
+
 /// Writes fields as float fog volumes of one .vdb file, compressed by blosc. Voxels of value 0 are
 /// inactive; a brick of one value becomes a tile.
 ///

@@ -86,7 +86,7 @@ class PassRenderer {
       samples = next_pass(samples, (now - before) / samples, timed, now);
       if (samples == 0) break;
     }
-    report(true);
+    report(seconds_since(start_), true);
   }
 
   bool stop_is_wished() const { return deadline_.stop_is_wished(); }
@@ -143,28 +143,25 @@ class PassRenderer {
         std::clamp(paths, double(kFewestPathsPerJob), double(kPathsPerJob)));
   }
 
-  /// Whether a pass over so many samples has to end; asked all the time.
+  /// Whether a pass over so many samples has to end; every thread asks before every flight.
   bool is_over(uint32_t samples) {
-    report(false);
+    const double now = seconds_since(start_);
+    if (now >= next_report_) report(now);
     const double done = (paths_done_ - samples_done_) / samples;
-    if (!over_ && deadline_.is_over(seconds_since(start_), done)) over_ = true;
+    if (!over_ && deadline_.is_over(now, done)) over_ = true;
     return over_;
   }
 
-  void report(bool last) {
+  void report(double now, bool last = false) {
     if (!progress_) return;
     std::unique_lock lock(report_mutex_, std::defer_lock);
     if (last) {
       lock.lock();
-    } else if (!lock.try_lock()) {
-      return;  // another thread is at it
+    } else if (!lock.try_lock() || now < next_report_) {
+      return;  // another thread is at it, or has been
     }
-    const double now = seconds_since(start_);
-    if (!last && now - reported_ < kSecondsBetweenReports) return;
-    reported_ = now;
-    if (!progress_({paths_done_, double(settings_.samples), now})) {
-      deadline_.wish_to_stop(now);
-    }
+    next_report_ = now + kSecondsBetweenReports;
+    if (!progress_({paths_done_, double(settings_.samples), now})) deadline_.wish_to_stop(now);
   }
 
   const PathSetup& setup_;
@@ -178,7 +175,7 @@ class PassRenderer {
   std::atomic<bool> over_ = false;
   std::atomic<double> paths_done_ = 0;  // samples of each pixel, on average
   std::mutex report_mutex_;
-  double reported_ = 0;
+  std::atomic<double> next_report_ = kSecondsBetweenReports;
   uint32_t samples_done_ = 0;
 };
 

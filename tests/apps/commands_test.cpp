@@ -50,14 +50,14 @@ TEST_F(CommandsTest, InfoTellsOfEachGrid) {
   }
   EXPECT_EQ(grid["active_voxels"], active);
   EXPECT_EQ(grid["maximum"].get<float>(), ball(Vec3i(0)));
-  const Outcome text = run("info ball.vdb");
+  const Outcome text = start("info ball.vdb");
   EXPECT_EQ(text.status, 0);
   EXPECT_NE(text.output.find("density"), std::string::npos);
 }
 
 TEST_F(CommandsTest, GenerateWritesWhatRenderReads) {
   for (const std::string kind : {"cloud", "smoke", "fireball"}) {
-    const Outcome outcome = run("generate " + kind + " -o made.vdb --resolution 32");
+    const Outcome outcome = start("generate " + kind + " -o made.vdb --resolution 32");
     EXPECT_EQ(outcome.status, 0) << kind << '\n' << outcome;
     const json info = run_json("info made.vdb --json");
     std::vector<std::string> names;
@@ -96,10 +96,10 @@ TEST_F(CommandsTest, MoreThreadsThanTheMachineHasAreFine) {
   write_cube(path("ball.vdb"));
   const std::string threads =
       " --threads " + std::to_string(std::thread::hardware_concurrency() + 3);
-  const Outcome slab = run("slab --tau 1 --paths 100000" + threads);
+  const Outcome slab = start("slab --tau 1 --paths 100000" + threads);
   EXPECT_EQ(slab.status, 0) << slab;
   EXPECT_EQ(slab.messages, "");
-  const Outcome render = run("render ball.vdb -o picture.exr --size 99x99 --spp 1" + threads);
+  const Outcome render = start("render ball.vdb -o picture.exr --size 99x99 --spp 1" + threads);
   EXPECT_EQ(render.status, 0) << render;
   // Three lines of a summary, and no warning.
   EXPECT_EQ(std::count(render.messages.begin(), render.messages.end(), '\n'), 3) << render;
@@ -114,13 +114,13 @@ TEST_F(CommandsTest, DiffMeasures) {
   EXPECT_DOUBLE_EQ(difference["mse"], 1);
   EXPECT_EQ(difference["mean_ratio"], json({0.5, 0.5, 0.5}));
   EXPECT_DOUBLE_EQ(difference["largest_difference"], 1);
-  EXPECT_EQ(run("diff a.exr a.exr").status, 0);
-  EXPECT_EQ(run("diff a.exr b.exr --max-relative-mse 0.001").status, 1);
+  EXPECT_EQ(start("diff a.exr a.exr").status, 0);
+  EXPECT_EQ(start("diff a.exr b.exr --max-relative-mse 0.001").status, 1);
 }
 
 TEST_F(CommandsTest, VersionAndHelpSucceed) {
-  EXPECT_EQ(run("--version").status, 0);
-  const Outcome help = run("--help");
+  EXPECT_EQ(start("--version").status, 0);
+  const Outcome help = start("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* command : {"render", "info", "generate", "slab", "diff"}) {
     EXPECT_NE(help.output.find(command), std::string::npos) << command;

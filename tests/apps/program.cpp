@@ -8,17 +8,25 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <ostream>
 #include <sstream>
 #include <thread>
+
+#include "apps/freepath/run.h"
 
 namespace freepath::testing {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 std::string read_text(const fs::path& file) {
   std::ifstream stream(file);
@@ -62,13 +70,47 @@ void wait_for(pid_t process, Clock::time_point start, std::chrono::seconds allow
     meanwhile();
   }
   set_end(outcome, wait_status);
-  outcome.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  outcome.seconds = seconds_since(start);
 }
 
 /// A file for what the program says, outside the folder that it works in.
 fs::path capture_file(const char* name) {
   return fs::path(::testing::TempDir()) / ("freepath_" + std::to_string(getpid()) + "." + name);
 }
+
+/// While one lives, what is written to a standard stream goes to a file, and then into a text.
+class Capture {
+ public:
+  Capture(int stream, const fs::path& file, std::string& text)
+      : stream_(stream), file_(file), text_(text) {
+    flush();
+    before_ = dup(stream_);
+    const int capture = open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC, 0600);
+    dup2(capture, stream_);
+    close(capture);
+  }
+  ~Capture() {
+    flush();
+    dup2(before_, stream_);
+    close(before_);
+    text_ = read_text(file_);
+    fs::remove(file_);
+  }
+  Capture(const Capture&) = delete;
+  Capture& operator=(const Capture&) = delete;
+
+ private:
+  static void flush() {
+    std::cout.flush();
+    std::cerr.flush();
+    std::fflush(nullptr);
+  }
+
+  int stream_;
+  int before_ = -1;
+  fs::path file_;
+  std::string& text_;
+};
 
 }  // namespace
 
@@ -85,8 +127,25 @@ std::vector<std::string> words(const std::string& line) {
   return result;
 }
 
-Outcome run_program(const std::vector<std::string>& arguments, const fs::path& folder,
-                    std::chrono::seconds allowed) {
+Outcome call_program(const std::vector<std::string>& arguments, const fs::path& folder) {
+  std::vector<const char*> pointers{FREEPATH_PROGRAM};
+  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+  const fs::path before = fs::current_path();
+  fs::current_path(folder);
+  Outcome outcome;
+  const Clock::time_point begin = Clock::now();
+  {
+    const Capture output(STDOUT_FILENO, capture_file("output"), outcome.output);
+    const Capture messages(STDERR_FILENO, capture_file("messages"), outcome.messages);
+    outcome.status = program::run(static_cast<int>(pointers.size()), pointers.data());
+  }
+  outcome.seconds = seconds_since(begin);
+  fs::current_path(before);
+  return outcome;
+}
+
+Outcome start_program(const std::vector<std::string>& arguments, const fs::path& folder,
+                      std::chrono::seconds allowed) {
   const fs::path output_file = capture_file("output");
   const fs::path messages_file = capture_file("messages");
   const int output = open(output_file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -104,9 +163,9 @@ Outcome run_program(const std::vector<std::string>& arguments, const fs::path& f
   return outcome;
 }
 
-Outcome run_in_terminal(const std::vector<std::string>& arguments, const fs::path& folder,
-                        const std::function<void(const std::string&, int)>& on_text,
-                        std::chrono::seconds allowed) {
+Outcome start_in_terminal(const std::vector<std::string>& arguments, const fs::path& folder,
+                          const std::function<void(const std::string&, int)>& on_text,
+                          std::chrono::seconds allowed) {
   Outcome outcome;
   int terminal = -1;
   int program_side = -1;

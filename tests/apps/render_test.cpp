@@ -309,13 +309,13 @@ TEST_F(RenderTest, CtrlCEndsPathsThatWouldTakeYears) {
   using Clock = std::chrono::steady_clock;
   std::optional<Clock::time_point> interrupted;
   const Outcome outcome =
-      run_in_terminal(words(std::string("render ball.vdb -o picture.exr") + kThick +
-                            "--size 8x8 --look-at 0,0,0,1,0,0"),
-                      folder_, [&](const std::string& text, int process) {
-                        if (interrupted || text.find("samples/s") == std::string::npos) return;
-                        interrupted = Clock::now();
-                        kill(process, SIGINT);
-                      });
+      start_in_terminal(words(std::string("render ball.vdb -o picture.exr") + kThick +
+                              "--size 8x8 --look-at 0,0,0,1,0,0"),
+                        folder_, [&](const std::string& text, int process) {
+                          if (interrupted || text.find("samples/s") == std::string::npos) return;
+                          interrupted = Clock::now();
+                          kill(process, SIGINT);
+                        });
   ASSERT_TRUE(interrupted) << outcome;
   // A second for the first samples, and slack for a slow machine.
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - *interrupted).count(), 1 + 2);
@@ -335,7 +335,7 @@ TEST_F(RenderTest, AProgressBarIsForTerminalsAlone) {
 
 TEST_F(RenderTest, CtrlCEndsItAndStillWrites) {
   bool interrupted = false;
-  const Outcome outcome = run_in_terminal(
+  const Outcome outcome = start_in_terminal(
       words("render ball.vdb -o picture.exr --stats stats.json --size 64x64 --spp 100000000 "
             "--albedo 1 --environment 1"),
       folder_, [&](const std::string& text, int process) {

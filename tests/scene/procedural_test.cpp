@@ -4,6 +4,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <ostream>
 #include <string>
 
 #include "freepath/base/error.h"
@@ -18,6 +19,9 @@ struct Kind {
   Generator generate;
   double least_filled;  // of the box around what there is
 };
+
+/// For the names of tests.
+std::ostream& operator<<(std::ostream& stream, const Kind& kind) { return stream << kind.name; }
 
 class Procedural : public testing::TestWithParam<Kind> {};
 

@@ -1,0 +1,75 @@
+#include "apps/freepath/run.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "apps/freepath/commands.h"
+#include "freepath/base/error.h"
+#include "freepath/base/version.h"
+
+namespace freepath::program {
+namespace {
+
+/// What is wrong with the command line, in the form of all errors.
+std::string usage_message(const CLI::App* program, const CLI::Error& error) {
+  const auto chosen = program->get_subcommands();
+  const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+  std::string what = error.what();
+  if (chosen.empty() && !program->remaining().empty()) {
+    what = fmt::format("there is no command '{}'", program->remaining().front());
+  }
+  std::replace(what.begin(), what.end(), '\n', ' ');
+  return fmt::format("freepath: error: {}; freepath{} --help explains\n", what, command);
+}
+
+/// Lets no option have an empty value: it would pass for an option that is not given.
+void refuse_empty_values(CLI::App& program) {
+  const CLI::Validator not_empty(
+      [](const std::string& text) { return std::string(text.empty() ? "the value is empty" : ""); },
+      "");
+  for (CLI::App* const command : program.get_subcommands({})) {
+    for (CLI::Option* const option : command->get_options()) {
+      if (option->get_expected_min() > 0) option->check(not_empty);
+    }
+  }
+}
+
+}  // namespace
+
+int run(int argc, const char* const* argv) {
+  CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
+  program.set_version_flag("--version", version());
+  program.require_subcommand(1);
+  program.failure_message(usage_message);
+  program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  program.footer("freepath COMMAND --help explains a command, with examples.");
+  add_render_command(program);
+  add_info_command(program);
+  add_generate_command(program);
+  add_slab_command(program);
+  add_diff_command(program);
+  add_trackers_command(program);
+  refuse_empty_values(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error);
+  } catch (const Error& error) {
+    fmt::print(stderr, "freepath: error: {}\n", error.what());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "freepath: error: out of memory\n");
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "freepath: internal error: {}\n", error.what());
+    return 3;
+  }
+  return 0;
+}
+
+}  // namespace freepath::program

@@ -1,0 +1,12 @@
+#pragma once
+/// @file The whole program as a function.
+
+namespace freepath::program {
+
+/// Parses a command line and runs its subcommand, which prints its results on standard output. An
+/// error becomes one line on standard error.
+/// @param argv as main's, the program's name first
+/// @return the exit status, 0 for success
+int run(int argc, const char* const* argv);
+
+}  // namespace freepath::program

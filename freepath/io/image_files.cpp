@@ -1,0 +1,254 @@
+// Image files, by OpenImageIO. It stands apart from the rest, so that programs that read and write
+// none don't load it.
+
+// Before OpenImageIO's headers, which bring an fmt of their own.
+#include "freepath/base/error.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <system_error>
+
+#include "freepath/io/image.h"
+
+namespace freepath {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// OpenImageIO's message, without a line break at its end.
+std::string trimmed(std::string message) {
+  while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) {
+    message.pop_back();
+  }
+  return message.empty() ? "unknown reason" : message;
+}
+
+std::vector<std::pair<std::string, MetadataValue>> metadata_of(const OIIO::ImageSpec& spec) {
+  std::vector<std::pair<std::string, MetadataValue>> metadata;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (value.type() == OIIO::TypeString) {
+      metadata.emplace_back(name, value.get_string());
+    } else if (value.type() == OIIO::TypeInt) {
+      metadata.emplace_back(name, int64_t{value.get_int()});
+    } else if (value.type() == OIIO::TypeFloat) {
+      metadata.emplace_back(name, double{value.get_float()});
+    } else if (value.type() == OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE)) {
+      metadata.emplace_back(name, *static_cast<const double*>(value.data()));
+    }
+  }
+  return metadata;
+}
+
+void set_metadata(OIIO::ImageSpec& spec, const Image& image) {
+  for (const auto& [name, value] : image.metadata) {
+    if (const auto* text = std::get_if<std::string>(&value)) {
+      spec.attribute(name, *text);
+    } else if (const auto* real = std::get_if<double>(&value)) {
+      spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), real);
+    } else {
+      const int64_t integer = std::get<int64_t>(value);
+      if (integer >= std::numeric_limits<int>::min() &&
+          integer <= std::numeric_limits<int>::max()) {
+        spec.attribute(name, static_cast<int>(integer));
+      } else {
+        spec.attribute(name, std::to_string(integer));
+      }
+    }
+  }
+}
+
+/// The file that a path stands for: a link is followed, so that renaming replaces its target.
+fs::path resolved(const std::string& path) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  return error ? fs::path(path) : real;
+}
+
+/// A file beside the target, which replaces it when it is complete and else disappears.
+class AsideFile {
+ public:
+  explicit AsideFile(const std::string& path) : path_(path), target_(resolved(path)) {
+    check_writable(path);
+    aside_ = target_.parent_path() /
+             fmt::format(".{}.{}.partial", target_.filename().string(), getpid());
+  }
+  AsideFile(const AsideFile&) = delete;
+  AsideFile& operator=(const AsideFile&) = delete;
+  ~AsideFile() {
+    std::error_code ignored;
+    fs::remove(aside_, ignored);
+  }
+
+  std::string name() const { return aside_.string(); }
+
+  [[noreturn]] void give_up(const std::string& reason) const {
+    fail("{}: can't write the image: {}", path_, trimmed(reason));
+  }
+
+  void replace_target() const {
+    std::error_code error;
+    fs::rename(aside_, target_, error);
+    if (error) give_up(error.message());
+  }
+
+ private:
+  std::string path_;
+  fs::path target_, aside_;
+};
+
+/// Writes with OpenImageIO: into the file aside, or into a buffer if there is one.
+void encode(const AsideFile& file, const char* format, const OIIO::ImageSpec& spec,
+            const OIIO::TypeDesc& type, const void* pixels,
+            OIIO::Filesystem::IOProxy* buffer = nullptr) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  if (!output) file.give_up(OIIO::geterror());
+  if (buffer != nullptr && !output->set_ioproxy(buffer)) file.give_up(output->geterror());
+  if (!output->open(file.name(), spec)) file.give_up(output->geterror());
+  const bool written = output->write_image(type, pixels);
+  const std::string reason = output->geterror();
+  if (!output->close() || !written) file.give_up(written ? output->geterror() : reason);
+}
+
+void check_consistent(const std::string& path, const Image& image) {
+  if (image.width < 1 || image.height < 1 || image.channels.empty() ||
+      image.values.size() != image.pixel_count() * image.channels.size()) {
+    fail("{}: the image to write has {}x{} pixels, {} channels and {} values, which do not agree",
+         path, image.width, image.height, image.channels.size(), image.values.size());
+  }
+}
+
+/// Makes the colour channels of sRGB values linear.
+void linearise(Image& image, int alpha_channel) {
+  const int channels = static_cast<int>(image.channels.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    if (static_cast<int>(i % channels) != alpha_channel) {
+      image.values[i] = linear_from_srgb(image.values[i]);
+    }
+  }
+}
+
+}  // namespace
+
+Image read_image(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) fail("{}: no such file", path);
+  if (fs::is_directory(status)) fail("{}: is a folder, not an image", path);
+  OIIO::ImageSpec wish;
+  wish.attribute("oiio:UnassociatedAlpha", 1);
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wish);
+  if (!input) fail("{}: can't read the image: {}", path, trimmed(OIIO::geterror()));
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.deep) fail("{}: a deep image; flatten it first", path);
+  if (spec.depth > 1)
+    fail("{}: an image with {} slices; give one with a single one", path, spec.depth);
+  Image image;
+  image.width = spec.width;
+  image.height = spec.height;
+  image.channels = spec.channelnames;
+  image.values.resize(image.pixel_count() * image.channels.size());
+  image.metadata = metadata_of(spec);
+  const bool encoded = spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
+  if (!input->read_image(0, 0, 0, -1, OIIO::TypeFloat, image.values.data())) {
+    fail("{}: can't read the image: {}", path, trimmed(input->geterror()));
+  }
+  if (encoded) linearise(image, spec.alpha_channel);
+  return image;
+}
+
+ImageFormat image_format(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".exr") return ImageFormat::kExr;
+  if (extension == ".png") return ImageFormat::kPng;
+  fail("{}: can't write images with the extension \"{}\"; use .exr or .png", path, extension);
+}
+
+void check_writable(const std::string& path) {
+  image_format(path);
+  const fs::path target = resolved(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    fail("{}: the folder {} does not exist; create it first", path, folder.string());
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    fail("{}: the folder {} can't be written to", path, folder.string());
+  }
+  const fs::file_status status = fs::status(target, error);
+  if (!fs::exists(status)) return;
+  if (!fs::is_regular_file(status)) fail("{}: exists and is not a file", path);
+  // Renaming would replace a read-only file, and root may write to any: its mode is what counts.
+  constexpr fs::perms kAnyWrite =
+      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  if ((status.permissions() & kAnyWrite) == fs::perms::none || access(target.c_str(), W_OK) != 0) {
+    fail("{}: the file exists and is read-only; remove it or choose another name", path);
+  }
+}
+
+void write_exr(const std::string& path, const Image& image, ExrPrecision precision) {
+  check_consistent(path, image);
+  if (image_format(path) != ImageFormat::kExr) fail("{}: an EXR file must end in .exr", path);
+  const bool half = precision == ExrPrecision::kHalf;
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()),
+                       half ? OIIO::TypeHalf : OIIO::TypeFloat);
+  spec.channelnames = image.channels;
+  spec.attribute("compression", "zip");
+  set_metadata(spec, image);
+  const AsideFile file(path);
+  if (half) {
+    constexpr float kLargestHalf = 65504;
+    std::vector<float> values = image.values;
+    for (float& value : values) value = std::clamp(value, -kLargestHalf, kLargestHalf);
+    encode(file, "openexr", spec, OIIO::TypeFloat, values.data());
+  } else {
+    encode(file, "openexr", spec, OIIO::TypeFloat, image.values.data());
+  }
+  file.replace_target();
+}
+
+void write_png(const std::string& path, const Image& image, double exposure) {
+  check_consistent(path, image);
+  if (image_format(path) != ImageFormat::kPng) fail("{}: a PNG file must end in .png", path);
+  if (!std::isfinite(exposure)) fail("{}: the exposure must be a finite number of stops", path);
+  const std::array<int, 3> colour = colour_channels(image, path);
+  const auto scale = static_cast<float>(std::exp2(exposure));
+  std::vector<uint8_t> bytes;
+  bytes.reserve(image.pixel_count() * 3);
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
+    for (const int channel : colour) {
+      const float value = image.values[pixel * image.channels.size() + channel] * scale;
+      // The order of the arguments makes a NaN black.
+      const float srgb = srgb_from_linear(std::min(1.0F, std::max(0.0F, value)));
+      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * srgb)));
+    }
+  }
+  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  // The PNG writer doesn't notice a full disk, hence the detour.
+  const AsideFile file(path);
+  std::vector<unsigned char> encoded;
+  OIIO::Filesystem::IOVecOutput buffer(encoded);
+  encode(file, "png", spec, OIIO::TypeUInt8, bytes.data(), &buffer);
+  std::ofstream stream(file.name(), std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(encoded.data()),
+               static_cast<std::streamsize>(encoded.size()));
+  stream.close();
+  if (!stream) file.give_up(std::generic_category().message(errno));
+  file.replace_target();
+}
+
+}  // namespace freepath
