@@ -9,6 +9,8 @@
 #define FREEPATH_MEDIA_FIELD_LOOKUP_INL_H_
 #endif
 
+#include <cstring>
+
 #include "freepath/base/lanes-inl.h"
 #include "freepath/media/density_function.h"
 #include "freepath/media/medium_view.h"
@@ -24,7 +26,6 @@ class FieldLookup {
     HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
     HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
     HWY_ALIGN_MAX int32_t address[Medium::kMaxComponents][kLanes];  ///< Voxel in the array.
-    HWY_ALIGN_MAX float computed[Medium::kMaxComponents][kLanes];   ///< Of a density function.
   };
 
   explicit FieldLookup(const MediumView& medium)
@@ -113,7 +114,9 @@ class FieldLookup {
 
   /// Stage 3: the density of one component.
   HWY_INLINE VecF density(int k, const State& state) const {
-    if (medium_.components[0].function != nullptr) return hn::Load(kFloat, state.computed[k]);
+    if (medium_.components[0].function != nullptr) {
+      return hn::BitCast(kFloat, hn::Load(kInt, state.address[k]));
+    }
     if (medium_.interpolation == Interpolation::kTrilinear) {
       return trilinear(k, state, hn::Eq(hn::Zero(kInt), hn::Zero(kInt)));
     }
@@ -144,7 +147,10 @@ class FieldLookup {
       positions[lane] = {state.fraction[0][lane], state.fraction[1][lane], state.fraction[2][lane]};
     }
     for (int k = 0; k < medium_.component_count; ++k) {
-      medium_.components[k].function->evaluate(positions, state.computed[k]);
+      float densities[kLanes] = {};
+      medium_.components[k].function->evaluate(positions, densities);
+      // Their bits stand where the address of a voxel would.
+      std::memcpy(state.address[k], densities, sizeof(densities));
     }
   }
 

@@ -59,6 +59,22 @@ HWY_INLINE void collide_by_delta(const WalkModes& modes, const Coefficients& sig
   }
 }
 
+/// The law of delta tracking, whatever is looked up.
+struct DeltaLaw : MethodTraits {
+  static constexpr bool kNeedsBound = true;
+
+  template <class Bounds>
+  HWY_INLINE VecF rate(const Bounds& bounds) const {
+    return bounds.majorant[0];
+  }
+
+  template <int N, class Coefficients>
+  HWY_INLINE void collide(const WalkModes& modes, const Coefficients& sigma,
+                          Collision<N>& c) const {
+    collide_by_delta<N>(modes, sigma, c);
+  }
+};
+
 }  // namespace freepath::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

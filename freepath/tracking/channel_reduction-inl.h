@@ -55,6 +55,20 @@ HWY_INLINE MaskF nothing_left(const Collision<N>& c) {
   return hn::Eq(largest, hn::Zero(kFloat));
 }
 
+/// Chooses among absorption, scattering and null with the probabilities of all channels, and ends
+/// paths of which nothing is left.
+/// @param scatter_size what the choice takes for the scattering coefficient of each channel
+template <int N, class Coefficients>
+HWY_INLINE void collide_spectrally(const ChannelReduction& reduce, const WalkModes& modes,
+                                   const Coefficients& sigma, const VecF (&scatter_size)[N],
+                                   const VecF (&sigma_n)[N], Collision<N>& c) {
+  VecF probability[3] = {reduce.over<N>(sigma.sigma_a, c.weight),
+                         reduce.over<N>(scatter_size, c.weight), reduce.over<N>(sigma_n, c.weight)};
+  choose_event<N>(modes, sigma, sigma_n, probability, c);
+  c.absorb = hn::Or(c.absorb, nothing_left<N>(c));
+  c.scatter = hn::AndNot(c.absorb, c.scatter);
+}
+
 }  // namespace freepath::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

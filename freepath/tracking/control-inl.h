@@ -63,6 +63,15 @@ HWY_INLINE MaskF decide_by_minimum(const WalkModes& modes, const Coefficients& c
   return choose_control<N>(modes, control, probability, c);
 }
 
+/// mu_n = rate - mu_t of each channel, where a control has decided first.
+template <int N, class Residual>
+HWY_INLINE void null_coefficients(const Residual& residual, const Collision<N>& c,
+                                  VecF (&sigma_n)[N]) {
+  for (int channel = 0; channel < N; ++channel) {
+    sigma_n[channel] = hn::Sub(c.full_rate, residual.sigma_t[channel]);
+  }
+}
+
 /// The least rate that leaves room for a residual next to the control, as a multiple of the
 /// minorant. A rate that bounds the extinction does so by itself while the control is at most the
 /// minorant; otherwise weights of the residual, which are at most (|mu^r| + |mu_n|)/(rate - mu^c),

@@ -26,8 +26,10 @@
 #include "freepath/base/lanes-inl.h"
 #include "freepath/tracking/collision-inl.h"
 #include "freepath/tracking/random-inl.h"
+#include "freepath/tracking/ray_dealer-inl.h"
 #include "freepath/tracking/statistics.h"
 #include "freepath/tracking/streams.h"
+#include "freepath/tracking/walk_group-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
@@ -40,9 +42,6 @@ inline constexpr int kGroups = 8;
 /// still looks for its tentative collision; the others go on, and those resume in the next round.
 inline constexpr int kSearchingShare = 4;
 
-/// The Philox block of a flight that draws its hero; tentative collisions count up from 0.
-inline constexpr uint32_t kHeroBlock = 0xFFFFFFFF;
-
 template <int N, class Tracker, class Segments, class Medium, class Entry>
 class Walk {
  public:
@@ -54,17 +53,16 @@ class Walk {
         medium_(medium),
         modes_(modes),
         seed_(seed),
-        rays_(rays),
-        entry_(entry),
-        flights_(flights),
+        ray_count_(rays.size()),
         statistics_(statistics),
+        dealer_(tracker, segments, medium, seed, rays, entry, flights),
         largest_weight_(hn::Zero(kFloat)) {}
 
   void run() {
     HWY_ALIGN_MAX Team teams[2] = {};
-    statistics_.rays += rays_.size();
+    statistics_.rays += ray_count_;
     for (Team& team : teams) {
-      for (Group& group : team) refill(group);
+      for (Group& group : team) dealer_.refill(group);
     }
     // While one team computes, the memory that the other has asked for arrives.
     bool alive = true;
@@ -77,41 +75,7 @@ class Walk {
   }
 
  private:
-  static constexpr int kRows = Tracker::template kRows<N>;
-
-  /// Lanes in flight together, one ray a lane.
-  struct Group {
-    typename Segments::State segments;
-    typename Medium::State lookup;
-    typename Medium::Control control;
-    HWY_ALIGN_MAX float rows[kRows == 0 ? 1 : kRows][kLanes];  ///< The method's own.
-    HWY_ALIGN_MAX float tau[kLanes];    ///< Optical depth still to go to the tentative collision.
-    HWY_ALIGN_MAX float drawn[kLanes];  ///< Optical depth from the last one to it.
-    HWY_ALIGN_MAX float rate[kLanes];   ///< Where it happened [1/m].
-    HWY_ALIGN_MAX float rest_rate[kLanes];  ///< Of what a control has left to decide [1/m].
-    HWY_ALIGN_MAX float uniform[kLanes];    ///< For the choice of the event.
-    HWY_ALIGN_MAX float exit[kLanes];       ///< Of the segment it happened in [world].
-    HWY_ALIGN_MAX float weight[N][kLanes];
-    HWY_ALIGN_MAX float emitted[N][kLanes];
-    HWY_ALIGN_MAX uint32_t words[3][kLanes];  ///< Random words for the collision to come.
-    HWY_ALIGN_MAX uint32_t pixel[kLanes];
-    HWY_ALIGN_MAX uint32_t sample[kLanes];
-    HWY_ALIGN_MAX uint32_t stream[kLanes];
-    HWY_ALIGN_MAX uint32_t block[kLanes];  ///< Philox blocks drawn, one per tentative collision.
-    HWY_ALIGN_MAX uint32_t control_decided[kLanes];  ///< How many of those were.
-    HWY_ALIGN_MAX int32_t component[kLanes];
-    HWY_ALIGN_MAX uint32_t ray[kLanes];  ///< Slot in the streams.
-    HWY_ALIGN_MAX float begin[kLanes];   ///< Where the ray entered the medium [world].
-    uint32_t alive;                      ///< Lanes that hold a ray.
-    uint32_t drawing;                    ///< Lanes that need a new optical depth.
-    uint32_t searching;                  ///< Lanes on their way to a tentative collision.
-    uint32_t colliding;                  ///< Lanes at a tentative collision.
-    uint32_t looking;                    ///< Those of them whose density is looked up.
-    uint32_t escaped;
-    uint32_t scattered;
-    uint32_t absorbed;
-  };
-
+  using Group = WalkGroup<N, Tracker, Segments, Medium>;
   using Team = Group[kGroups / 2];
 
   /// A round of one team: ends its collisions, then finds its next ones and aims at them; asks for
@@ -123,7 +87,7 @@ class Walk {
       if (other[i].looking != 0) fetch(other[i]);
       Group& group = team[i];
       if (group.looking != 0) collide(group);
-      retire(group);
+      dealer_.retire(group);
       if (group.alive == 0) continue;
       alive = true;
       draw(group);
@@ -222,22 +186,11 @@ class Walk {
   /// A stretch of `length` without a collision, as far as the method's rows are concerned.
   template <class Bounds>
   HWY_INLINE void advance_rows(const Bounds& bounds, VecF length, MaskF lanes, Group& group) const {
-    VecF rows[kRows == 0 ? 1 : kRows];
-    load_rows(group, rows);
+    VecF rows[Group::kStoredRows];
+    group.load_rows(rows);
     tracker_.template advance<N>(bounds, length, rows);
-    store_rows(rows, lanes, group);
+    group.store_rows(rows, lanes);
   }
-  static HWY_INLINE void load_rows(const Group& group, VecF* rows) {
-    for (int row = 0; row < kRows; ++row) rows[row] = hn::Load(kFloat, group.rows[row]);
-  }
-  static HWY_INLINE void store_rows(const VecF* rows, MaskF lanes, Group& group) {
-    for (int row = 0; row < kRows; ++row) {
-      VecF kept = hn::Load(kFloat, group.rows[row]);
-      assign(kept, lanes, rows[row]);
-      hn::Store(kept, kFloat, group.rows[row]);
-    }
-  }
-
   /// Begins the look-ups of the lanes that have found their tentative collision; the control, if
   /// the method has one, decides first.
   HWY_INLINE void aim(Group& group) {
@@ -349,8 +302,8 @@ class Walk {
       c.uniform = hn::Load(kFloat, group.uniform);
       c.rate = hn::IfThenElse(c.lanes, hn::Load(kFloat, group.rest_rate), set(1.0F));
     }
-    VecF rows[kRows == 0 ? 1 : kRows];
-    load_rows(group, rows);
+    VecF rows[Group::kStoredRows];
+    group.load_rows(rows);
     c.rows = rows;
     if constexpr (Tracker::kNeedsDepth) c.depth = hn::Load(kFloat, group.drawn);
     VecI component;
@@ -377,7 +330,7 @@ class Walk {
     c.absorb = hn::And(c.absorb, c.lanes);
     const VecI before = hn::Load(kInt, group.component);
     hn::Store(hn::IfThenElse(int_mask(c.lanes), component, before), kInt, group.component);
-    store_rows(rows, c.lanes, group);
+    group.store_rows(rows, c.lanes);
     end_collision(c, group);
     group.drawing = group.colliding & ~(group.scattered | group.absorbed);
     count(group, sigma_t, c);
@@ -390,7 +343,7 @@ class Walk {
     statistics_.tentative_collisions += collisions;
     statistics_.real_collisions += real;
     statistics_.null_collisions += collisions - real;
-    statistics_.lookups += collisions * lookups_per_collision();
+    statistics_.lookups += collisions * Group::lookups_per_collision(medium_);
     count_weights(c);
     if constexpr (Tracker::kNeedsBound) {
       // Rounding of an interpolated maximum is no violation.
@@ -410,137 +363,15 @@ class Walk {
     statistics_.negative_weights += hn::CountTrue(kFloat, negative);
   }
 
-  HWY_INLINE uint32_t lookups_per_collision() const {
-    return Tracker::kOneComponent ? 1U : static_cast<uint32_t>(medium_.component_count());
-  }
-
-  /// Writes out the rays that have ended and refills their lanes.
-  HWY_INLINE void retire(Group& group) {
-    const uint32_t done = group.escaped | group.scattered | group.absorbed;
-    if (done == 0) return;
-    if constexpr (kRows > 0) finish(group, done);
-    for (uint32_t rest = done; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      const uint32_t bit = 1U << lane;
-      const uint32_t ray = group.ray[lane];
-      flights_.t[ray] = group.segments.t[lane] + group.begin[lane];
-      flights_.event[ray] = (group.scattered & bit) != 0  ? Event::kScatter
-                            : (group.absorbed & bit) != 0 ? Event::kAbsorb
-                                                          : Event::kEscape;
-      flights_.component[ray] = static_cast<uint8_t>(group.component[lane]);
-      for (int channel = 0; channel < N; ++channel) {
-        flights_.weight[channel][ray] = group.weight[channel][lane];
-        flights_.emitted[channel][ray] = group.emitted[channel][lane];
-        if constexpr (Tracker::kDrawsHero) {
-          flights_.density[channel][ray] = group.rows[channel][lane];
-        }
-      }
-      // Every block but one that found no collision belongs to a tentative collision.
-      const uint32_t unspent = (group.escaped & bit) != 0 ? 1 : 0;
-      uint32_t looked_up = group.block[lane] - unspent;
-      if constexpr (Tracker::kControl) looked_up -= group.control_decided[lane];
-      flights_.lookups[ray] = looked_up * lookups_per_collision();
-    }
-    group.escaped = group.scattered = group.absorbed = group.colliding = group.looking = 0;
-    group.alive &= ~done;
-    group.drawing &= ~done;
-    refill(group);
-  }
-
-  /// The final weights of rays that have ended, for methods that keep more than a weight.
-  HWY_INLINE void finish(Group& group, uint32_t done) const {
-    VecF rows[kRows == 0 ? 1 : kRows];
-    load_rows(group, rows);
-    VecF weight[N];
-    for (int channel = 0; channel < N; ++channel) {
-      weight[channel] = hn::Load(kFloat, group.weight[channel]);
-    }
-    VecF depth = hn::Zero(kFloat);  // since the last tentative collision
-    if constexpr (Tracker::kNeedsDepth) {
-      depth = hn::IfThenElseZero(mask_of(group.escaped), hn::Sub(hn::Load(kFloat, group.drawn),
-                                                                 hn::Load(kFloat, group.tau)));
-    }
-    tracker_.template finish<N>(rows, depth, weight);
-    const MaskF lanes = mask_of(done);
-    store_rows(rows, lanes, group);
-    for (int channel = 0; channel < N; ++channel) {
-      VecF kept = hn::Load(kFloat, group.weight[channel]);
-      assign(kept, lanes, weight[channel]);
-      hn::Store(kept, kFloat, group.weight[channel]);
-    }
-  }
-
-  /// Gives each empty lane the next ray of the stream, as far as the chunk reaches.
-  HWY_INLINE void refill(Group& group) {
-    if (next_ray_ == chunk_end_) {
-      if (next_ray_ == rays_.size()) return;
-      chunk_begin_ = next_ray_;
-      chunk_ = &entry_.enter(next_ray_);
-      chunk_end_ = std::min(next_ray_ + Entry::kChunk, rays_.size());
-    }
-    uint32_t lanes = ~group.alive & ((1U << kLanes) - 1);
-    const std::size_t left = chunk_end_ - next_ray_;
-    while (static_cast<std::size_t>(std::popcount(lanes)) > left) lanes &= lanes - 1;
-    const Dealer dealer(lanes);
-    segments_.refill(*chunk_, next_ray_ - chunk_begin_, dealer, group.segments);
-    dealer.deal(chunk_->begin + (next_ray_ - chunk_begin_), group.begin);
-    for (int channel = 0; channel < N; ++channel) {
-      if (rays_.weighted()) {
-        dealer.deal(rays_.weight[channel].data() + next_ray_, group.weight[channel]);
-      } else {
-        dealer.fill(1.0F, group.weight[channel]);
-      }
-      dealer.fill(0.0F, group.emitted[channel]);
-    }
-    if constexpr (kRows > 0) {
-      for (int row = 0; row < kRows; ++row) {
-        dealer.fill(tracker_.template row_start<N>(row), group.rows[row]);
-      }
-    }
-    dealer.deal(rays_.pixel.data() + next_ray_, group.pixel);
-    dealer.deal(rays_.sample.data() + next_ray_, group.sample);
-    dealer.deal(rays_.stream.data() + next_ray_, group.stream);
-    dealer.clear(group.block);
-    if constexpr (Tracker::kControl) dealer.clear(group.control_decided);
-    dealer.count_from(static_cast<uint32_t>(next_ray_), group.ray);
-    if constexpr (Tracker::kDrawsHero) draw_hero(dealer, mask_of(lanes), group);
-    next_ray_ += static_cast<std::size_t>(std::popcount(lanes));
-    group.alive |= lanes;
-    group.drawing |= lanes;
-  }
-
-  /// The channel that leads each new flight, by random numbers that no collision uses.
-  HWY_INLINE void draw_hero(const Dealer& dealer, MaskF lanes, Group& group) const {
-    VecF rows[kRows];
-    VecF weight[N];
-    for (int channel = 0; channel < N; ++channel) {
-      if (rays_.weighted()) {
-        dealer.deal(rays_.density[channel].data() + next_ray_, group.rows[channel]);
-      }
-      weight[channel] = hn::Load(kFloat, group.weight[channel]);
-    }
-    load_rows(group, rows);
-    const RandomWords random =
-        philox_lanes(hn::Set(kUint, kHeroBlock), hn::Load(kUint, group.stream),
-                     hn::Load(kUint, group.sample), hn::Load(kUint, group.pixel), seed_);
-    tracker_.template begin<N>(uniform_lanes(random.words[0]), weight, medium_.albedo(), rows);
-    store_rows(rows, lanes, group);
-  }
-
   const Tracker& tracker_;
   const Segments& segments_;
   const Medium& medium_;
   const WalkModes& modes_;
   uint64_t seed_;
-  const RayStream& rays_;
-  Entry& entry_;
-  FlightStream& flights_;
+  std::size_t ray_count_;
   WalkStatistics& statistics_;
+  RayDealer<N, Tracker, Segments, Medium, Entry> dealer_;
   VecF largest_weight_;
-  const typename Entry::Rows* chunk_ = nullptr;  ///< Rays that have entered, from chunk_begin_ on.
-  std::size_t chunk_begin_ = 0;
-  std::size_t chunk_end_ = 0;
-  std::size_t next_ray_ = 0;
 };
 
 }  // namespace freepath::HWY_NAMESPACE

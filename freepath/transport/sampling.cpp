@@ -5,9 +5,16 @@
 namespace freepath {
 namespace {
 
-Walker make_walker(const Medium& medium, WalkSettings settings, int channel) {
+using WalkMember = void (Walker::*)(const RayStream&, FlightStream&, WalkStatistics&) const;
+
+FlightStream walk_once(WalkMember walk, const Medium& medium, const RayStream& rays,
+                       WalkSettings settings, int channel, WalkStatistics* statistics) {
   if (settings.tracker == kAutoTracker) settings.tracker = choose_tracker(medium).tracker;
-  return Walker(medium, settings, channel);
+  FlightStream flights;
+  WalkStatistics counts;
+  (Walker(medium, settings, channel).*walk)(rays, flights, counts);
+  if (statistics != nullptr) statistics->merge(counts);
+  return flights;
 }
 
 }  // namespace
@@ -15,21 +22,13 @@ Walker make_walker(const Medium& medium, WalkSettings settings, int channel) {
 FlightStream sample_free_paths(const Medium& medium, const RayStream& rays,
                                const WalkSettings& settings, int channel,
                                WalkStatistics* statistics) {
-  FlightStream flights;
-  WalkStatistics counts;
-  make_walker(medium, settings, channel).free_paths(rays, flights, counts);
-  if (statistics != nullptr) statistics->merge(counts);
-  return flights;
+  return walk_once(&Walker::free_paths, medium, rays, settings, channel, statistics);
 }
 
 FlightStream estimate_transmittance(const Medium& medium, const RayStream& rays,
                                     const WalkSettings& settings, int channel,
                                     WalkStatistics* statistics) {
-  FlightStream flights;
-  WalkStatistics counts;
-  make_walker(medium, settings, channel).transmittance(rays, flights, counts);
-  if (statistics != nullptr) statistics->merge(counts);
-  return flights;
+  return walk_once(&Walker::transmittance, medium, rays, settings, channel, statistics);
 }
 
 }  // namespace freepath

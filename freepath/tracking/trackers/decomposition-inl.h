@@ -47,9 +47,7 @@ struct Decomposition : MethodTraits {
   HWY_INLINE void collide(const WalkModes& modes, const Coefficients& residual,
                           Collision<N>& c) const {
     VecF sigma_n[N];
-    for (int channel = 0; channel < N; ++channel) {
-      sigma_n[channel] = hn::Sub(c.full_rate, residual.sigma_t[channel]);
-    }
+    null_coefficients<N>(residual, c, sigma_n);
     // Rounding may leave a trifle below 0.
     const VecF zero = hn::Zero(kFloat);
     VecF probability[3] = {hn::Max(channel_mean<N>(residual.sigma_a), zero),

@@ -15,7 +15,7 @@ namespace freepath::HWY_NAMESPACE {
 
 /// P_e = mu_e/rate [Woodcock65]: real collisions happen with their own probability, and the weight
 /// of a null collision is exactly 1. Channels that share one extinction share the path.
-struct Delta : MethodTraits {
+struct Delta : DeltaLaw {
   static constexpr MethodInfo kInfo = {"delta",
                                        "Woodcock's tracking: real collisions by rejection",
                                        "",
@@ -24,19 +24,6 @@ struct Delta : MethodTraits {
                                        {}};
 
   explicit Delta(std::span<const float> /*options*/) {}
-
-  template <class Bounds>
-  HWY_INLINE VecF rate(const Bounds& bounds) const {
-    return bounds.majorant[0];
-  }
-
-  template <int N, class Coefficients>
-  HWY_INLINE void collide(const WalkModes& modes, const Coefficients& sigma,
-                          Collision<N>& c) const {
-    collide_by_delta<N>(modes, sigma, c);
-  }
-
-  static constexpr bool kNeedsBound = true;
 };
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -14,31 +14,18 @@ HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
 /// The components' rates add up; a tentative collision belongs to one of them with probability
-/// rate_k/rate, and is delta tracking within that one [Galtier16]. No other component's density is
-/// looked up.
-struct MultiVolume : MethodTraits {
+/// rate_k/rate, and is delta tracking within that one, by its own rate [Galtier16]. No other
+/// component's density is looked up.
+struct MultiVolume : DeltaLaw {
   static constexpr MethodInfo kInfo = {"multi-volume",
                                        "delta tracking that looks one component up a collision",
                                        "",
                                        "if the rate bounds the extinction, as super-voxels do",
                                        "[Galtier16]",
                                        {}};
-  static constexpr bool kNeedsBound = true;
   static constexpr bool kOneComponent = true;
 
   explicit MultiVolume(std::span<const float> /*options*/) {}
-
-  template <class Bounds>
-  HWY_INLINE VecF rate(const Bounds& bounds) const {
-    return bounds.majorant[0];
-  }
-
-  /// @param sigma coefficients of the drawn component; c.rate is that component's own
-  template <int N, class Coefficients>
-  HWY_INLINE void collide(const WalkModes& modes, const Coefficients& sigma,
-                          Collision<N>& c) const {
-    collide_by_delta<N>(modes, sigma, c);
-  }
 };
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -15,7 +15,7 @@ namespace freepath::HWY_NAMESPACE {
 
 /// Each channel by a path of its own, by delta tracking [Raab08; Eymet13]: the baseline of the
 /// spectral trackers. Also in media where channels could share a path.
-struct PerWavelength : MethodTraits {
+struct PerWavelength : DeltaLaw {
   static constexpr MethodInfo kInfo = {"per-wavelength",
                                        "delta tracking with a path for each channel",
                                        "",
@@ -25,20 +25,8 @@ struct PerWavelength : MethodTraits {
                                        /*chromatic=*/false,
                                        /*biased=*/false,
                                        /*one_channel=*/true};
-  static constexpr bool kNeedsBound = true;
 
   explicit PerWavelength(std::span<const float> /*options*/) {}
-
-  template <class Bounds>
-  HWY_INLINE VecF rate(const Bounds& bounds) const {
-    return bounds.majorant[0];
-  }
-
-  template <int N, class Coefficients>
-  HWY_INLINE void collide(const WalkModes& modes, const Coefficients& sigma,
-                          Collision<N>& c) const {
-    collide_by_delta<N>(modes, sigma, c);
-  }
 };
 
 }  // namespace freepath::HWY_NAMESPACE

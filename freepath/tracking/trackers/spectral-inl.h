@@ -45,12 +45,7 @@ struct Spectral : MethodTraits {
     for (int channel = 0; channel < N; ++channel) {
       sigma_n[channel] = hn::Sub(c.rate, hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]));
     }
-    VecF probability[3] = {reduce.over<N>(sigma.sigma_a, c.weight),
-                           reduce.over<N>(sigma.sigma_s, c.weight),
-                           reduce.over<N>(sigma_n, c.weight)};
-    choose_event<N>(modes, sigma, sigma_n, probability, c);
-    c.absorb = hn::Or(c.absorb, nothing_left<N>(c));
-    c.scatter = hn::AndNot(c.absorb, c.scatter);
+    collide_spectrally<N>(reduce, modes, sigma, sigma.sigma_s, sigma_n, c);
   }
 
   ChannelReduction reduce;

@@ -65,15 +65,8 @@ struct SpectralDecomposition : MethodTraits {
   HWY_INLINE void collide(const WalkModes& modes, const Coefficients& residual,
                           Collision<N>& c) const {
     VecF sigma_n[N];
-    for (int channel = 0; channel < N; ++channel) {
-      sigma_n[channel] = hn::Sub(c.full_rate, residual.sigma_t[channel]);
-    }
-    VecF probability[3] = {reduce.over<N>(residual.sigma_a, c.weight),
-                           reduce.over<N>(residual.scatter_size, c.weight),
-                           reduce.over<N>(sigma_n, c.weight)};
-    choose_event<N>(modes, residual, sigma_n, probability, c);
-    c.absorb = hn::Or(c.absorb, nothing_left<N>(c));
-    c.scatter = hn::AndNot(c.absorb, c.scatter);
+    null_coefficients<N>(residual, c, sigma_n);
+    collide_spectrally<N>(reduce, modes, residual, residual.scatter_size, sigma_n, c);
   }
 
   ChannelReduction reduce;

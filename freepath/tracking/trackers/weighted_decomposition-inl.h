@@ -54,9 +54,9 @@ struct WeightedDecomposition : MethodTraits {
   HWY_INLINE void collide(const WalkModes& modes, const Coefficients& residual,
                           Collision<N>& c) const {
     VecF sigma_n[N];
+    null_coefficients<N>(residual, c, sigma_n);
     VecF absorb = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
-      sigma_n[channel] = hn::Sub(c.full_rate, residual.sigma_t[channel]);
       absorb = hn::Add(absorb, hn::Abs(residual.sigma_a[channel]));
     }
     VecF probability[3] = {hn::Mul(absorb, set(1.0F / N)), channel_mean<N>(residual.scatter_size),

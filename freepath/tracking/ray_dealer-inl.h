@@ -1,0 +1,169 @@
+// How the rays of a stream come into the lanes of a walk, and their flights out of them.
+
+#if defined(FREEPATH_TRACKING_RAY_DEALER_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FREEPATH_TRACKING_RAY_DEALER_INL_H_
+#undef FREEPATH_TRACKING_RAY_DEALER_INL_H_
+#else
+#define FREEPATH_TRACKING_RAY_DEALER_INL_H_
+#endif
+
+#include <algorithm>
+#include <bit>
+
+#include "freepath/tracking/random-inl.h"
+#include "freepath/tracking/streams.h"
+#include "freepath/tracking/walk_group-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace freepath::HWY_NAMESPACE {
+
+/// The Philox block of a flight that draws its hero; tentative collisions count up from 0.
+inline constexpr uint32_t kHeroBlock = 0xFFFFFFFF;
+
+/// Gives rays to the lanes of groups, and takes back what became of them.
+template <int N, class Tracker, class Segments, class Medium, class Entry>
+class RayDealer {
+ public:
+  using Group = WalkGroup<N, Tracker, Segments, Medium>;
+
+  RayDealer(const Tracker& tracker, const Segments& segments, const Medium& medium, uint64_t seed,
+            const RayStream& rays, Entry& entry, FlightStream& flights)
+      : tracker_(tracker),
+        segments_(segments),
+        medium_(medium),
+        seed_(seed),
+        rays_(rays),
+        entry_(entry),
+        flights_(flights) {}
+
+  /// Writes out the rays that have ended and refills their lanes.
+  HWY_INLINE void retire(Group& group) {
+    const uint32_t done = group.escaped | group.scattered | group.absorbed;
+    if (done == 0) return;
+    if constexpr (Group::kRows > 0) finish(group, done);
+    for (uint32_t rest = done; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      const uint32_t bit = 1U << lane;
+      const uint32_t ray = group.ray[lane];
+      flights_.t[ray] = group.segments.t[lane] + group.begin[lane];
+      flights_.event[ray] = (group.scattered & bit) != 0  ? Event::kScatter
+                            : (group.absorbed & bit) != 0 ? Event::kAbsorb
+                                                          : Event::kEscape;
+      flights_.component[ray] = static_cast<uint8_t>(group.component[lane]);
+      for (int channel = 0; channel < N; ++channel) {
+        flights_.weight[channel][ray] = group.weight[channel][lane];
+        flights_.emitted[channel][ray] = group.emitted[channel][lane];
+        if constexpr (Tracker::kDrawsHero) {
+          flights_.density[channel][ray] = group.rows[channel][lane];
+        }
+      }
+      // Every block but one that found no collision belongs to a tentative collision.
+      const uint32_t unspent = (group.escaped & bit) != 0 ? 1 : 0;
+      uint32_t looked_up = group.block[lane] - unspent;
+      if constexpr (Tracker::kControl) looked_up -= group.control_decided[lane];
+      flights_.lookups[ray] = looked_up * Group::lookups_per_collision(medium_);
+    }
+    group.escaped = group.scattered = group.absorbed = group.colliding = group.looking = 0;
+    group.alive &= ~done;
+    group.drawing &= ~done;
+    refill(group);
+  }
+
+  /// Gives each empty lane the next ray of the stream, as far as the chunk reaches.
+  HWY_INLINE void refill(Group& group) {
+    if (next_ray_ == chunk_end_) {
+      if (next_ray_ == rays_.size()) return;
+      chunk_begin_ = next_ray_;
+      chunk_ = &entry_.enter(next_ray_);
+      chunk_end_ = std::min(next_ray_ + Entry::kChunk, rays_.size());
+    }
+    uint32_t lanes = ~group.alive & ((1U << kLanes) - 1);
+    const std::size_t left = chunk_end_ - next_ray_;
+    while (static_cast<std::size_t>(std::popcount(lanes)) > left) lanes &= lanes - 1;
+    const Dealer dealer(lanes);
+    segments_.refill(*chunk_, next_ray_ - chunk_begin_, dealer, group.segments);
+    dealer.deal(chunk_->begin + (next_ray_ - chunk_begin_), group.begin);
+    for (int channel = 0; channel < N; ++channel) {
+      if (rays_.weighted()) {
+        dealer.deal(rays_.weight[channel].data() + next_ray_, group.weight[channel]);
+      } else {
+        dealer.fill(1.0F, group.weight[channel]);
+      }
+      dealer.fill(0.0F, group.emitted[channel]);
+    }
+    if constexpr (Group::kRows > 0) {
+      for (int row = 0; row < Group::kRows; ++row) {
+        dealer.fill(tracker_.template row_start<N>(row), group.rows[row]);
+      }
+    }
+    dealer.deal(rays_.pixel.data() + next_ray_, group.pixel);
+    dealer.deal(rays_.sample.data() + next_ray_, group.sample);
+    dealer.deal(rays_.stream.data() + next_ray_, group.stream);
+    dealer.clear(group.block);
+    if constexpr (Tracker::kControl) dealer.clear(group.control_decided);
+    dealer.count_from(static_cast<uint32_t>(next_ray_), group.ray);
+    if constexpr (Tracker::kDrawsHero) draw_hero(dealer, mask_of(lanes), group);
+    next_ray_ += static_cast<std::size_t>(std::popcount(lanes));
+    group.alive |= lanes;
+    group.drawing |= lanes;
+  }
+
+ private:
+  /// The final weights of rays that have ended, for methods that keep more than a weight.
+  HWY_INLINE void finish(Group& group, uint32_t done) const {
+    VecF rows[Group::kStoredRows];
+    group.load_rows(rows);
+    VecF weight[N];
+    for (int channel = 0; channel < N; ++channel) {
+      weight[channel] = hn::Load(kFloat, group.weight[channel]);
+    }
+    VecF depth = hn::Zero(kFloat);  // since the last tentative collision
+    if constexpr (Tracker::kNeedsDepth) {
+      depth = hn::IfThenElseZero(mask_of(group.escaped), hn::Sub(hn::Load(kFloat, group.drawn),
+                                                                 hn::Load(kFloat, group.tau)));
+    }
+    tracker_.template finish<N>(rows, depth, weight);
+    const MaskF lanes = mask_of(done);
+    group.store_rows(rows, lanes);
+    for (int channel = 0; channel < N; ++channel) {
+      VecF kept = hn::Load(kFloat, group.weight[channel]);
+      assign(kept, lanes, weight[channel]);
+      hn::Store(kept, kFloat, group.weight[channel]);
+    }
+  }
+
+  /// The channel that leads each new flight, by random numbers that no collision uses.
+  HWY_INLINE void draw_hero(const Dealer& dealer, MaskF lanes, Group& group) const {
+    VecF rows[Group::kStoredRows];
+    VecF weight[N];
+    for (int channel = 0; channel < N; ++channel) {
+      if (rays_.weighted()) {
+        dealer.deal(rays_.density[channel].data() + next_ray_, group.rows[channel]);
+      }
+      weight[channel] = hn::Load(kFloat, group.weight[channel]);
+    }
+    group.load_rows(rows);
+    const RandomWords random =
+        philox_lanes(hn::Set(kUint, kHeroBlock), hn::Load(kUint, group.stream),
+                     hn::Load(kUint, group.sample), hn::Load(kUint, group.pixel), seed_);
+    tracker_.template begin<N>(uniform_lanes(random.words[0]), weight, medium_.albedo(), rows);
+    group.store_rows(rows, lanes);
+  }
+
+  const Tracker& tracker_;
+  const Segments& segments_;
+  const Medium& medium_;
+  uint64_t seed_;
+  const RayStream& rays_;
+  Entry& entry_;
+  FlightStream& flights_;
+  const typename Entry::Rows* chunk_ = nullptr;  ///< Rays that have entered, from chunk_begin_ on.
+  std::size_t chunk_begin_ = 0;
+  std::size_t chunk_end_ = 0;
+  std::size_t next_ray_ = 0;
+};
+
+}  // namespace freepath::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // FREEPATH_TRACKING_RAY_DEALER_INL_H_
