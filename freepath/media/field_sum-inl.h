@@ -122,8 +122,9 @@ class FieldSum {
     return left;
   }
 
-  /// Chooses the component that a scattering belongs to, with probability proportional to the mean
-  /// over channels of |sigma_s,k|, and corrects the weights by sigma_s,k(λ)/(sigma_s(λ) P_k).
+  /// Chooses the component that a scattering belongs to, with probability proportional to the sum
+  /// over channels of |w(λ) sigma_s,k(λ)/sigma_s(λ)|, and corrects the weights by
+  /// sigma_s,k(λ)/(sigma_s(λ) P_k): the sum of their magnitudes stays what it was.
   HWY_INLINE VecI choose_component(const State& state, const Coefficients& total, VecF uniform,
                                    MaskF lanes, VecF (&weight)[N]) const {
     return choose([&](int k) { return lookup_.density(k, state); }, total, uniform, lanes, weight);
@@ -203,10 +204,26 @@ class FieldSum {
     return sum;
   }
 
-  /// Σ_λ σ_s,k(λ)
-  float scatter_sum(int k) const {
-    float sum = 0;
-    for (int channel = 0; channel < N; ++channel) sum += medium_.components[k].sigma_s[channel];
+  /// What each channel counts for in the choice of a component: |w(λ)/σ_s(λ)|, so that the parts
+  /// of a scattering's weight are compared. One channel has nothing to compare.
+  static HWY_INLINE void channel_shares(const Coefficients& total, const VecF (&weight)[N],
+                                        VecF (&share)[N]) {
+    for (int channel = 0; channel < N; ++channel) {
+      const VecF sigma_s = total.sigma_s[channel];
+      const MaskF scatters = hn::Ne(sigma_s, hn::Zero(kFloat));
+      share[channel] =
+          N == 1 ? set(1.0F)
+                 : hn::IfThenElseZero(
+                       scatters, hn::Abs(hn::Div(weight[channel],
+                                                 hn::IfThenElse(scatters, sigma_s, set(1.0F)))));
+    }
+  }
+  /// Σ_λ share(λ) σ_s,k(λ): times |ρ_k| the probability of component k, unnormalised.
+  HWY_INLINE VecF shared_sum(int k, const VecF (&share)[N]) const {
+    VecF sum = hn::Zero(kFloat);
+    for (int channel = 0; channel < N; ++channel) {
+      add(sum, share[channel], medium_.components[k].sigma_s[channel]);
+    }
     return sum;
   }
 
@@ -215,14 +232,16 @@ class FieldSum {
                          MaskF lanes, VecF (&weight)[N]) const {
     VecI chosen = hn::Zero(kInt);
     if (medium_.component_count == 1) return chosen;
+    VecF share[N];
+    channel_shares(total, weight, share);
     VecF sum = hn::Zero(kFloat);
     for (int k = 0; k < medium_.component_count; ++k) {
-      add(sum, hn::Abs(density_of(k)), scatter_sum(k));
+      sum = hn::MulAdd(hn::Abs(density_of(k)), shared_sum(k, share), sum);
     }
     VecF rest = hn::Mul(uniform, sum);
     MaskF open = lanes;
     for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF part = hn::Mul(hn::Abs(density_of(k)), set(scatter_sum(k)));
+      const VecF part = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
       // The last component that can scatter takes what rounding leaves over.
       const MaskF here = hn::And(open, hn::Gt(part, hn::Zero(kFloat)));
       const MaskF takes = hn::And(here, hn::Lt(rest, part));
@@ -230,24 +249,28 @@ class FieldSum {
       open = hn::AndNot(takes, open);
       rest = hn::Sub(rest, part);
     }
-    correct_weights(density_of, total, sum, chosen, lanes, weight);
+    correct_weights(density_of, total, share, sum, chosen, lanes, weight);
     return chosen;
   }
 
   template <class Density>
-  HWY_INLINE void correct_weights(const Density& density_of, const Coefficients& total, VecF sum,
-                                  VecI chosen, MaskF lanes, VecF (&weight)[N]) const {
+  HWY_INLINE void correct_weights(const Density& density_of, const Coefficients& total,
+                                  const VecF (&share)[N], VecF sum, VecI chosen, MaskF lanes,
+                                  VecF (&weight)[N]) const {
     for (int k = 0; k < medium_.component_count; ++k) {
-      const MaskF mine = hn::And(lanes, float_mask(hn::Eq(chosen, hn::Set(kInt, k))));
+      const VecF part = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
+      const MaskF mine = hn::And(hn::And(lanes, hn::Gt(part, hn::Zero(kFloat))),
+                                 float_mask(hn::Eq(chosen, hn::Set(kInt, k))));
       if (hn::AllFalse(kFloat, mine)) continue;
-      const ComponentView& component = medium_.components[k];
-      const float part = scatter_sum(k);
-      if (part <= 0) continue;
+      // |density| cancels: (density σ_s,k(λ)/σ_s(λ)) · (sum / (|density| Σ_λ share σ_s,k)); one
+      // channel of positive densities keeps its weight to the bit.
       const VecF signed_sum = hn::CopySign(sum, density_of(k));
+      const VecF shared = hn::IfThenElse(mine, shared_sum(k, share), set(1.0F));
       for (int channel = 0; channel < N; ++channel) {
-        // |density| cancels: (density σ_s,k(λ) / σ_s(λ)) · (sum / (|density| Σ_λ σ_s,k))
         const MaskF scatters = hn::And(mine, hn::Ne(total.sigma_s[channel], hn::Zero(kFloat)));
-        const VecF factor = hn::Div(hn::Mul(set(component.sigma_s[channel] / part), signed_sum),
+        const VecF of_component =
+            N == 1 ? set(1.0F) : hn::Div(set(medium_.components[k].sigma_s[channel]), shared);
+        const VecF factor = hn::Div(hn::Mul(of_component, signed_sum),
                                     hn::IfThenElse(scatters, total.sigma_s[channel], set(1.0F)));
         assign(weight[channel], scatters, hn::Mul(weight[channel], factor));
       }

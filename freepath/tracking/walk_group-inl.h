@@ -29,9 +29,9 @@ struct WalkGroup {
   typename Medium::State lookup;
   Control control;
   HWY_ALIGN_MAX float rows[kStoredRows][kLanes];  ///< The method's own.
-  HWY_ALIGN_MAX float tau[kLanes];    ///< Optical depth still to go to the tentative collision.
-  HWY_ALIGN_MAX float drawn[kLanes];  ///< Optical depth from the last one to it.
-  HWY_ALIGN_MAX float rate[kLanes];   ///< Where it happened [1/m].
+  HWY_ALIGN_MAX float tau[kLanes];        ///< Optical depth still to go to the tentative collision.
+  HWY_ALIGN_MAX float drawn[kLanes];      ///< Optical depth from the last one to it.
+  HWY_ALIGN_MAX float rate[kLanes];       ///< Where it happened [1/m].
   HWY_ALIGN_MAX float rest_rate[kLanes];  ///< Of what a control has left to decide [1/m].
   HWY_ALIGN_MAX float uniform[kLanes];    ///< For the choice of the event.
   HWY_ALIGN_MAX float exit[kLanes];       ///< Of the segment it happened in [world].

@@ -187,8 +187,10 @@ TEST(FixtureA, EveryTargetAgrees) {
 // every tracker whose weights are tame.
 TEST(FixtureA, OnePercentInAWeightIsNoticed) {
   const double threshold = family_wise_threshold(1e-3, all_cases().size() * 3);
-  for (const char* tracker : {"delta", "weighted-delta", "weighted-delta:rate-scale=2",
-                              "decomposition", "multi-volume"}) {
+  for (const char* tracker :
+       {"delta", "weighted-delta", "weighted-delta:rate-scale=2", "decomposition",
+        "weighted-decomposition", "multi-volume", "per-wavelength", "spectral",
+        "spectral-decomposition", "hero-wavelength"}) {
     const Case test{tracker, Absorption::kAnalog, EmissionTally::kCollision};
     for (int mutation = 0; mutation < 2; ++mutation) {
       Planted planted = {1, 1};
@@ -204,6 +206,18 @@ TEST(FixtureA, OnePercentInAWeightIsNoticed) {
       EXPECT_GT(largest_z, threshold) << tracker << ", mutation " << mutation;
     }
   }
+}
+
+// What the history of a path is looked at for: the weights stay below the number of channels, where
+// those of `max` grow by every event that suits a channel better than the others.
+TEST(FixtureA, HistoryKeepsWeightsBounded) {
+  const auto largest_weight = [](const char* tracker) {
+    const Case test{tracker, Absorption::kAnalog, EmissionTally::kCollision};
+    return estimate_radiance(fixture(), settings_for(test, Simd::kBest), 3'000'000)
+        .walk.largest_weight;
+  };
+  EXPECT_LE(largest_weight("spectral:collision-probability=history-average"), 3.00001F);  // rounded
+  EXPECT_GT(largest_weight("spectral:collision-probability=max"), 50.0F);
 }
 
 TEST(FixtureA, EveryEstimatorReproducesTheTransmittance) {
