@@ -88,11 +88,11 @@ class Walk {
       Group& group = team[i];
       if (group.looking != 0) collide(group);
       dealer_.retire(group);
-      if (group.alive == 0) continue;
-      alive = true;
-      draw(group);
+      alive |= group.alive != 0;
     }
     if (!alive) return false;
+    // Side by side, so that the chains of multiplications of one group fill the gaps of another.
+    for (Group& group : team) draw(group);
     step_through_segments(team);
     for (Group& group : team) {
       if (group.alive != 0) aim(group);
