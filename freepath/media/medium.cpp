@@ -169,6 +169,15 @@ void Medium::build_from_functions() {
   }
 }
 
+Medium Medium::with_scaled_bounds(float scale) const {
+  if (!(scale > 0) || !std::isfinite(scale)) fail("bounds can't be scaled by {}", scale);
+  Medium scaled = *this;
+  for (float& maximum : scaled.super_voxels_.maxima) maximum *= scale;
+  for (float& minimum : scaled.super_voxels_.minima) minimum /= scale;
+  scaled.walk_cells_ = mark_empty_cells(scaled.super_voxels_);
+  return scaled;
+}
+
 AffineMap Medium::world_to_walk(const Vec3d& origin) const {
   AffineMap map;
   for (int to = 0; to < 3; ++to) {

@@ -53,6 +53,11 @@ class Medium {
   explicit Medium(std::vector<Component> components, int super_voxel = 0,
                   std::optional<Matrix4d> world_to_index = {});
 
+  /// The same medium with other bounds: maxima times `scale`, minima divided by it. Above 1 they
+  /// are looser; below 1 they are no bounds, which methods that need them are biased by. To study
+  /// what bounds cost, and to test what notices wrong ones.
+  Medium with_scaled_bounds(float scale) const;
+
   const std::vector<Component>& components() const { return components_; }
   const SuperVoxels& super_voxels() const { return super_voxels_; }
 

@@ -12,13 +12,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
+/// Weights below it end: products of numbers with fewer digits round to themselves, and would never
+/// become 0.
+inline constexpr float kSmallestWeight = 0x1p-126F;
+
 /// The factor on what survives, 0 for what does not: lanes whose `largest` lies below the threshold
 /// go on with probability largest/threshold, the others always.
 HWY_INLINE VecF roulette_gain(float threshold, VecF largest, VecF uniform) {
   const MaskF played = hn::Lt(largest, set(threshold));
   const VecF survival = hn::Mul(largest, set(threshold > 0 ? 1.0F / threshold : 0.0F));
   const MaskF ends =
-      hn::Or(hn::AndNot(hn::Lt(uniform, survival), played), hn::Eq(largest, hn::Zero(kFloat)));
+      hn::Or(hn::AndNot(hn::Lt(uniform, survival), played), hn::Lt(largest, set(kSmallestWeight)));
   const VecF gain = hn::IfThenElse(played, divide_or_zero(set(1.0F), survival), set(1.0F));
   return hn::IfThenZeroElse(ends, gain);
 }

@@ -85,8 +85,9 @@ class Walk {
     bool alive = false;
     for (int i = 0; i < kGroups / 2; ++i) {
       if (other[i].looking != 0) fetch(other[i]);
-      Group& group = team[i];
-      if (group.looking != 0) collide(group);
+      if (team[i].looking != 0) collide(team[i]);
+    }
+    for (Group& group : team) {
       dealer_.retire(group);
       alive |= group.alive != 0;
     }

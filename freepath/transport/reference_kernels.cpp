@@ -102,6 +102,16 @@ void check_constant(const Medium& medium, int k, const Vec3i& low, const Vec3i& 
   }
 }
 
+/// Fails unless the bounds of component k, which are read in place of its voxels, are tight.
+void check_tight(const Medium& medium, int k, float density) {
+  const SuperVoxels& cells = medium.super_voxels();
+  for (std::size_t i = k; i < cells.maxima.size(); i += cells.components) {
+    if (cells.maxima[i] == 0 || cells.maxima[i] == density) continue;
+    fail("'closed-form' takes the density from its bounds, but grid '{}' is {} and its bound {}",
+         medium.components()[k].density->name, density, cells.maxima[i]);
+  }
+}
+
 /// Homogeneous within its bounds, and not softened there.
 void check_closed_form(const Medium& medium, Interpolation interpolation) {
   check_voxels<ClosedForm>(medium, interpolation);
@@ -114,7 +124,9 @@ void check_closed_form(const Medium& medium, Interpolation interpolation) {
     }
   }
   for (int k = 0; k < static_cast<int>(medium.components().size()); ++k) {
-    if (largest(medium.components()[k].sigma_t()) > 0) check_constant(medium, k, low, high);
+    if (largest(medium.components()[k].sigma_t()) == 0) continue;
+    check_constant(medium, k, low, high);
+    check_tight(medium, k, medium.components()[k].density->voxels.value(low));
   }
   if (interpolation != Interpolation::kNearest) {
     fail(

@@ -82,17 +82,17 @@ struct FixtureA {
   /// mu_s = (6r, 0.9 + 2.1r², r), mu_a = (0.5r, 1.5r, 3√r), as a sum of seven components. The
   /// absorbing ones are split so that sums of constant emissions make L_e(x) exactly:
   /// 1+x = 1(1-x) + 2x, 2-x = 2(1-x) + 1x, 0.5+x² = 0.5(1-x²) + 1.5x².
-  static Medium medium(int super_voxel = 64) {
+  static Medium medium(int super_voxel = 64, int voxels = kVoxels) {
     std::vector<Component> components;
     const auto add = [&](auto density, const Spectrum& sigma_a, const Spectrum& sigma_s,
                          const Spectrum& emission) {
       Component component;
       Matrix4d index_to_world;
-      index_to_world.setScale(Vec3d(1.0 / kVoxels, 1, 1));
-      index_to_world[3][0] = 0.5 / kVoxels;
+      index_to_world.setScale(Vec3d(1.0 / voxels, 1, 1));
+      index_to_world[3][0] = 0.5 / voxels;
       component.density = make_field(
-          Vec3i(0, 0, 0), Vec3i(kVoxels - 1, 0, 0),
-          [&](const Vec3i& p) { return static_cast<float>(density((p.x + 0.5) / kVoxels)); },
+          Vec3i(0, 0, 0), Vec3i(voxels - 1, 0, 0),
+          [&](const Vec3i& p) { return static_cast<float>(density((p.x + 0.5) / voxels)); },
           index_to_world);
       component.sigma_a = sigma_a;
       component.sigma_s = sigma_s;

@@ -1,0 +1,217 @@
+#include "tests/certify/cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "freepath/base/error.h"
+#include "freepath/base/random.h"
+
+namespace freepath::testing {
+namespace {
+
+/// Values at which numbers are certified besides their standard.
+const std::map<std::string_view, std::vector<std::string>>& certified_values() {
+  static const std::map<std::string_view, std::vector<std::string>> kValues = {
+      {"rate-scale", {"3", "0.7"}}, {"control", {"0.5", "1.3"}}, {"roulette", {"0"}},
+      {"coverage", {"0.9"}},        {"order-zero", {"0.5"}},     {"orders", {"4"}},
+      {"points-scale", {"2"}}};
+  return kValues;
+}
+
+/// The values of an option that are not its standard.
+std::vector<std::string> values_of(const MethodOption& option) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < option.choices.size(); ++i) {
+    if (static_cast<float>(i) != option.standard) values.emplace_back(option.choices[i]);
+  }
+  if (!option.choices.empty()) return values;
+  const auto found = certified_values().find(option.name);
+  if (found == certified_values().end()) {
+    throw std::logic_error("tests/certify/cases.cpp does not say which values of the option '" +
+                           std::string(option.name) + "' to certify");
+  }
+  return found->second;
+}
+
+/// Properties of a case as numbers, to enumerate and to pair them.
+constexpr int kProperties = 7;
+using Levels = std::array<int, kProperties>;
+
+class CaseSpace {
+ public:
+  explicit CaseSpace(bool free_paths)
+      : free_paths_(free_paths), variants_(certified_variants(free_paths)) {
+    counts_ = {static_cast<int>(variants_.size()), static_cast<int>(certified_media().size()), 3,
+               2, 2, free_paths ? 2 : 1, free_paths ? 2 : 1};
+    possible_.resize(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2] * counts_[3]);
+    Levels levels{};
+    do possible_[place(levels)] = !reason_against(make(levels));
+    while (advance(levels, kDecisive));
+  }
+
+  const Levels& counts() const { return counts_; }
+  bool possible(const Levels& levels) const { return possible_[place(levels)]; }
+
+  CertifiedCase make(const Levels& levels) const {
+    CertifiedCase test;
+    test.method = variants_[levels[0]];
+    test.free_paths = free_paths_;
+    test.medium = levels[1];
+    test.interpolation = static_cast<Interpolation>(levels[2]);
+    test.tight = levels[3] == 0;
+    test.one_lane = levels[4] == 1;
+    test.absorption = levels[5] == 0 ? Absorption::kWeighted : Absorption::kAnalog;
+    test.emission = levels[6] == 0 ? EmissionTally::kCollision : EmissionTally::kAnalog;
+    return test;
+  }
+
+  /// Calls f with every possible case.
+  template <class Function>
+  void for_each(Function f) const {
+    Levels levels{};
+    do {
+      if (possible(levels)) f(levels);
+    } while (advance(levels, kProperties));
+  }
+
+ private:
+  /// The first properties, method, medium, interpolation and bounds, decide what is possible.
+  static constexpr int kDecisive = 4;
+
+  /// The next levels of the first `properties`; false after the last.
+  bool advance(Levels& levels, int properties) const {
+    int property = properties - 1;
+    while (property >= 0 && ++levels[property] == counts_[property]) levels[property--] = 0;
+    return property >= 0;
+  }
+  std::size_t place(const Levels& levels) const {
+    std::size_t place = 0;
+    for (int i = 0; i < kDecisive; ++i) place = place * counts_[i] + levels[i];
+    return place;
+  }
+
+  bool free_paths_;
+  std::vector<std::string> variants_;
+  Levels counts_{};
+  std::vector<bool> possible_;
+};
+
+using Pair = std::array<int, 4>;  // property, its level, another property, its level
+
+template <class Function>
+void for_each_pair(const Levels& levels, Function f) {
+  for (int i = 0; i < kProperties; ++i) {
+    for (int j = i + 1; j < kProperties; ++j) f(Pair{i, levels[i], j, levels[j]});
+  }
+}
+
+}  // namespace
+
+WalkSettings CertifiedCase::settings() const {
+  WalkSettings settings;
+  (free_paths ? settings.tracker : settings.transmittance) = method;
+  // What an estimator carries depends on the tracker beside it; this one takes all channels.
+  if (!free_paths) settings.tracker = "spectral";
+  settings.interpolation = interpolation;
+  settings.absorption = absorption;
+  settings.emission = emission;
+  settings.simd = one_lane ? Simd::kOneLane : Simd::kBest;
+  settings.seed = 20170711;
+  return settings;
+}
+
+std::string CertifiedCase::modes() const {
+  constexpr const char* kNames[] = {"nearest", "trilinear", "stochastic"};
+  std::string modes = kNames[static_cast<int>(interpolation)];
+  modes += tight ? ", tight" : ", loose";
+  modes += one_lane ? ", one lane" : ", lanes";
+  if (!free_paths) return modes;
+  modes += absorption == Absorption::kWeighted ? ", weighted absorption" : ", analog absorption";
+  modes += emission == EmissionTally::kCollision ? ", collision emission" : ", analog emission";
+  return modes;
+}
+
+std::string CertifiedCase::name() const {
+  return method + " | " + certified_media()[medium].name + " | " + modes();
+}
+
+std::vector<std::string> certified_variants(bool free_paths) {
+  std::vector<std::string> variants;
+  for (const MethodInfo& info : free_paths ? tracker_infos() : transmittance_infos()) {
+    if (info.biased) continue;
+    const std::string name(info.name);
+    variants.push_back(name);
+    std::string all;
+    for (const MethodOption& option : info.options) {
+      const std::vector<std::string> values = values_of(option);
+      for (const std::string& value : values) {
+        variants.push_back(fmt::format("{}:{}={}", name, option.name, value));
+      }
+      all += fmt::format("{}{}={}", all.empty() ? ":" : ",", option.name, values.back());
+    }
+    if (info.options.size() > 1) variants.push_back(name + all);
+  }
+  return variants;
+}
+
+std::optional<std::string> reason_against(const CertifiedCase& test) {
+  try {
+    const WalkSettings settings = test.settings();
+    const Medium& medium = test.walked_medium();
+    const Walker walker(medium, settings,
+                        shares_paths(medium, settings) ? Walker::kAllChannels : 0);
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+std::vector<CertifiedCase> all_cases(bool free_paths) {
+  const CaseSpace space(free_paths);
+  std::vector<CertifiedCase> cases;
+  space.for_each([&](const Levels& levels) { cases.push_back(space.make(levels)); });
+  return cases;
+}
+
+std::vector<CertifiedCase> pairwise_cases(bool free_paths) {
+  constexpr int kCandidates = 40;
+  const CaseSpace space(free_paths);
+  std::set<Pair> open;
+  space.for_each([&](const Levels& levels) {
+    for_each_pair(levels, [&](const Pair& pair) { open.insert(pair); });
+  });
+  RandomStream random(1, 0, 0, 0);
+  std::vector<CertifiedCase> cases;
+  while (!open.empty()) {
+    // Of some random cases that cover the first open pair, the one that covers most others.
+    const Pair wanted = *open.begin();
+    Levels best{};
+    int most = 0;
+    for (int candidate = 0; candidate < kCandidates || most == 0; ++candidate) {
+      Levels levels{};
+      for (int i = 0; i < kProperties; ++i) {
+        levels[i] = static_cast<int>(random.bits() % static_cast<uint32_t>(space.counts()[i]));
+      }
+      levels[wanted[0]] = wanted[1];
+      levels[wanted[2]] = wanted[3];
+      if (!space.possible(levels)) continue;
+      int covered = 0;
+      for_each_pair(levels, [&](const Pair& pair) { covered += open.count(pair) != 0 ? 1 : 0; });
+      if (covered > most) {
+        most = covered;
+        best = levels;
+      }
+    }
+    for_each_pair(best, [&](const Pair& pair) { open.erase(pair); });
+    cases.push_back(space.make(best));
+  }
+  return cases;
+}
+
+}  // namespace freepath::testing
