@@ -132,6 +132,29 @@ void fill_brick(const Vec3i& brick, const std::array<float, 8>& shape, float thr
   }
 }
 
+/// @param draw a ray's origin and direction, from random numbers of the batch
+template <class Draw>
+std::vector<RayStream> make_streams(std::size_t batches, const Draw& draw) {
+  std::vector<RayStream> streams(batches);
+  for (std::size_t batch = 0; batch < batches; ++batch) {
+    RayStream& rays = streams[batch];
+    rays.resize(kRaysPerBatch);
+    RandomStream random(1, static_cast<uint32_t>(batch), 0, 0);
+    for (std::size_t i = 0; i < kRaysPerBatch; ++i) {
+      const auto [origin, direction] = draw(random);
+      for (int axis = 0; axis < 3; ++axis) {
+        rays.origin[axis][i] = origin[axis];
+        rays.direction[axis][i] = direction[axis];
+      }
+      rays.t_max[i] = std::numeric_limits<float>::infinity();
+      rays.pixel[i] = static_cast<uint32_t>(batch);
+      rays.sample[i] = static_cast<uint32_t>(i);
+      rays.stream[i] = 0;
+    }
+  }
+  return streams;
+}
+
 }  // namespace
 
 Medium make_cloud(int size) {
@@ -167,33 +190,29 @@ Medium make_cloud(int size) {
 std::vector<RayStream> make_rays(const Medium& medium, std::size_t batches) {
   const Box3d box = medium.world_bounds();
   const BrickMap& map = medium.components()[0].density->voxels;
-  std::vector<RayStream> streams(batches);
-  for (std::size_t batch = 0; batch < batches; ++batch) {
-    RayStream& rays = streams[batch];
-    rays.resize(kRaysPerBatch);
-    RandomStream random(1, static_cast<uint32_t>(batch), 0, 0);
-    for (std::size_t i = 0; i < kRaysPerBatch; ++i) {
-      Vec3d origin;
-      do {
-        for (int axis = 0; axis < 3; ++axis) {
-          origin[axis] = box.min[axis] + (box.max[axis] - box.min[axis]) * random.uniform();
-        }
-      } while (map.interpolate(origin) == 0);
-      const float height = 2 * random.uniform() - 1;
-      const float angle = 2 * std::numbers::pi_v<float> * random.uniform();
-      const float radius = std::sqrt(1 - height * height);
-      const Vec3f direction(radius * std::cos(angle), radius * std::sin(angle), height);
+  return make_streams(batches, [&](RandomStream& random) {
+    Vec3d origin;
+    do {
       for (int axis = 0; axis < 3; ++axis) {
-        rays.origin[axis][i] = static_cast<float>(origin[axis]);
-        rays.direction[axis][i] = direction[axis];
+        origin[axis] = box.min[axis] + (box.max[axis] - box.min[axis]) * random.uniform();
       }
-      rays.t_max[i] = std::numeric_limits<float>::infinity();
-      rays.pixel[i] = static_cast<uint32_t>(batch);
-      rays.sample[i] = static_cast<uint32_t>(i);
-      rays.stream[i] = 0;
-    }
-  }
-  return streams;
+    } while (map.interpolate(origin) == 0);
+    const float height = 2 * random.uniform() - 1;
+    const float angle = 2 * std::numbers::pi_v<float> * random.uniform();
+    const float radius = std::sqrt(1 - height * height);
+    return std::pair(Vec3f(origin),
+                     Vec3f(radius * std::cos(angle), radius * std::sin(angle), height));
+  });
+}
+
+std::vector<RayStream> make_view_rays(const Medium& medium, std::size_t batches) {
+  const Box3d box = medium.world_bounds();
+  return make_streams(batches, [&](RandomStream& random) {
+    Vec3d origin = box.min;
+    origin.x -= box.size().x;
+    for (int axis = 1; axis < 3; ++axis) origin[axis] += box.size()[axis] * random.uniform();
+    return std::pair(Vec3f(origin), Vec3f(1, 0, 0));
+  });
 }
 
 double majorant_ratio(const Medium& medium) {

@@ -21,6 +21,10 @@ Medium make_cloud(int size);
 /// the same part of memory but by chance.
 std::vector<RayStream> make_rays(const Medium& medium, std::size_t batches);
 
+/// Parallel rays along x from outside, through random places of the medium's side: the pixels of a
+/// picture.
+std::vector<RayStream> make_view_rays(const Medium& medium, std::size_t batches);
+
 /// Of the cells that are not empty: the mean majorant over the mean extinction of their voxels.
 double majorant_ratio(const Medium& medium);
 

@@ -2,21 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include "bench/agreement.h"
+#include "bench/timing.h"
 
 namespace freepath::bench {
 namespace {
-
-struct Mean {
-  double value;
-  double variance;  ///< Of the mean.
-};
-
-Mean mean(double sum, double sum_squared, double count) {
-  const double value = sum / count;
-  return {value, (sum_squared / count - value * value) / (count - 1)};
-}
 
 Mean mean_collisions(const Tally& tally) {
   return mean(tally.collisions, tally.collisions_squared, tally.rays);
@@ -24,10 +14,6 @@ Mean mean_collisions(const Tally& tally) {
 
 Mean mean_weight(const Tally& tally) {
   return mean(tally.weight, tally.weight_squared, tally.rays);
-}
-
-bool agree(const Mean& a, const Mean& b) {
-  return std::abs(a.value - b.value) <= kLargestDifference * std::sqrt(a.variance + b.variance);
 }
 
 }  // namespace
@@ -48,11 +34,7 @@ void KeepingReporter::ReportRuns(const std::vector<Run>& runs) {
 
 double KeepingReporter::median(const std::string& name) const {
   const auto found = times_.find(name);
-  if (found == times_.end()) return 0;
-  std::vector<double> times = found->second;
-  std::sort(times.begin(), times.end());
-  const std::size_t middle = times.size() / 2;
-  return times.size() % 2 == 1 ? times[middle] : (times[middle - 1] + times[middle]) / 2;
+  return found == times_.end() ? 0 : bench::median(found->second);
 }
 
 bool report(const Table& table, const KeepingReporter& reporter) {

@@ -38,11 +38,7 @@ struct Table {
 
 /// Prints the rows that ran, and tests that they have the same mean number of collisions and the
 /// same mean weight as the first of them, naming those that have not.
-/// @return whether all agree within kLargestDifference standard errors
+/// @return whether all agree (see agree())
 bool report(const Table& table, const KeepingReporter& reporter);
-
-/// Standard errors that means may differ by; with a hundred comparisons less than one chance in a
-/// thousand.
-inline constexpr double kLargestDifference = 4.5;
 
 }  // namespace freepath::bench

@@ -1,19 +1,21 @@
 /// @file Every tracker and estimator of the registry side by side: time of a tentative collision in
-/// a large cloud, and look-ups, variance and largest weight in a dense haze, where controls decide
-/// much. bench/README.md has the figures.
+/// a large cloud, in lanes and in scalar loops; look-ups, variance and largest weight in a dense
+/// haze, where controls decide much; what a spectral path costs against a path for each channel,
+/// and multi-volume against delta in volumes that overlap. Exits with 1 if variants of one method
+/// differ in what they do. bench/README.md has the figures.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <exception>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bench/cloud.h"
+#include "bench/media.h"
+#include "bench/tables.h"
+#include "bench/timing.h"
 #include "freepath/transport/walker.h"
 
 namespace freepath::bench {
@@ -21,39 +23,7 @@ namespace {
 
 constexpr int kRepetitions = 9;
 constexpr std::size_t kBatches = 16;
-
-/// Time that this thread has run: what else the machine does counts as little as can be.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-}
-
-/// A cube whose density varies smoothly between 0.55 and 1: minima of super-voxels are most of the
-/// maxima.
-Medium make_haze(const Spectrum& sigma_a, const Spectrum& sigma_s) {
-  constexpr int kSize = 128;
-  BrickMapBuilder builder(Vec3i(0), Vec3i(kSize - 1), 0);
-  for (int x = 0; x < kSize; ++x) {
-    for (int y = 0; y < kSize; ++y) {
-      for (int z = 0; z < kSize; ++z) {
-        const double wave = std::sin(0.09 * x) * std::cos(0.07 * y + 0.05 * z);
-        builder.set_voxel(Vec3i(x, y, z), static_cast<float>(0.775 + 0.225 * wave));
-      }
-    }
-  }
-  auto field = std::make_shared<Field>();
-  field->name = "haze";
-  field->voxels = std::move(builder).finish();
-  return Medium({Component{.density = field, .sigma_a = sigma_a, .sigma_s = sigma_s}}, 8);
-}
-
-Medium with_spectra(const Medium& medium, const Spectrum& sigma_a, const Spectrum& sigma_s) {
-  Component component = medium.components()[0];
-  component.sigma_a = sigma_a;
-  component.sigma_s = sigma_s;
-  return Medium({component}, medium.super_voxels().cell_size);
-}
+constexpr std::size_t kPathBatches = 4;  ///< Of the tables that follow paths over many scatterings.
 
 /// One method on one medium: all channels of a path, or the first alone.
 struct Contestant {
@@ -98,11 +68,6 @@ struct Contestant {
     }
   }
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
-}
 
 std::vector<Contestant> enlist(const Medium& medium, const std::vector<std::string>& methods,
                                bool free_paths, bool all_channels) {
@@ -162,41 +127,83 @@ void compare_lookups(const char* title, std::vector<Contestant> contestants,
   }
 }
 
-int run() {
-  const std::vector<std::string> trackers = {"delta",
-                                             "weighted-delta",
-                                             "multi-volume",
-                                             "decomposition",
-                                             "weighted-decomposition",
-                                             "weighted-decomposition:control=1.3",
-                                             "spectral",
-                                             "spectral:collision-probability=max",
-                                             "spectral-decomposition",
-                                             "spectral-decomposition:control=1.3",
-                                             "hero-wavelength"};
-  const std::vector<std::string> estimators = {"ratio", "delta", "residual-ratio", "next-flight"};
-  const Medium cloud = make_cloud(512);
-  const std::vector<RayStream> rays = make_rays(cloud, kBatches);
+const std::vector<std::string> kTrackers = {"delta",
+                                            "weighted-delta",
+                                            "multi-volume",
+                                            "decomposition",
+                                            "weighted-decomposition",
+                                            "weighted-decomposition:control=1.3",
+                                            "spectral",
+                                            "spectral:collision-probability=max",
+                                            "spectral-decomposition",
+                                            "spectral-decomposition:control=1.3",
+                                            "hero-wavelength"};
+const std::vector<std::string> kEstimators = {"ratio", "delta", "residual-ratio", "next-flight"};
+/// Extinctions of the channels, relative to the first.
+const Spectrum kChromatic(1.0F, 0.6F, 0.3F);
+const Spectrum kMildlyChromatic(1.0F, 0.85F, 0.7F);
+
+Medium coloured(const Medium& medium, const Spectrum& colour) {
+  const Spectrum sigma_t = medium.components()[0].sigma_t() * colour;
+  return with_spectra(medium, sigma_t * 0.1F, sigma_t * 0.9F);
+}
+
+void compare_trackers(const Medium& cloud, const std::vector<RayStream>& rays) {
   compare_times("512^3 cloud, one channel, to the first real collision",
-                enlist(cloud, trackers, true, false), rays);
-  compare_times("512^3 cloud, one channel, transmittance", enlist(cloud, estimators, false, false),
+                enlist(cloud, kTrackers, true, false), rays);
+  compare_times("512^3 cloud, one channel, transmittance", enlist(cloud, kEstimators, false, false),
                 rays);
-  const Spectrum sigma_t = cloud.components()[0].sigma_t();
-  const Spectrum chromatic = sigma_t * Spectrum(1.0F, 0.6F, 0.3F);
-  const Medium coloured = with_spectra(cloud, chromatic * 0.1F, chromatic * 0.9F);
+  const Medium chromatic_cloud = coloured(cloud, kChromatic);
   std::vector<Contestant> all = enlist(cloud, {"delta"}, true, false);
-  for (Contestant& contestant : enlist(coloured, trackers, true, true)) {
+  for (Contestant& contestant : enlist(chromatic_cloud, kTrackers, true, true)) {
     all.push_back(std::move(contestant));
   }
   compare_times("512^3 chromatic cloud, three channels (first: delta, one channel)", std::move(all),
                 rays);
+}
+
+/// Volumes that overlap: the mirror images of a cloud, in fields of their own.
+void compare_volumes() {
+  const Medium cloud = make_cloud(256);
+  const std::vector<RayStream> rays = make_rays(cloud, kBatches);
+  for (const int count : {2, 4, 8}) {
+    compare_times(fmt::format("{} overlapping 256^3 clouds, one channel", count).c_str(),
+                  enlist(in_mirrors(cloud, count), {"delta", "multi-volume"}, true, false), rays);
+  }
+}
+
+bool compare_spectral_costs(const std::string& name, const Medium& grey) {
+  const Medium medium = coloured(grey, kChromatic);
+  const std::vector<RayStream> inside = make_rays(medium, kPathBatches);
+  bool same = true;
+  for (const int scatterings : {1, 8}) {
+    same &= compare_spectral_costs(
+        fmt::format("{}, lit by height, from inside, scatterings: {}", name, scatterings), medium,
+        inside, Light::kHeight, scatterings);
+  }
+  const std::vector<RayStream> view = make_view_rays(medium, kPathBatches);
+  same &= compare_spectral_costs(name + ", daylight, seen from the side, scatterings: 8", medium,
+                                 view, Light::kDaylight, 8);
+  same &= compare_spectral_costs("mildly " + name + ", the same", coloured(grey, kMildlyChromatic),
+                                 view, Light::kDaylight, 8);
+  return same;
+}
+
+int run() {
+  const Medium cloud = make_cloud(512);
+  const std::vector<RayStream> rays = make_rays(cloud, kBatches);
+  bool same = compare_with_scalar_loops(cloud, rays);
+  compare_trackers(cloud, rays);
+  compare_volumes();
   const Medium haze = make_haze(Spectrum(0.0F), Spectrum(0.05F));
   const std::vector<RayStream> haze_rays = make_rays(haze, kBatches);
-  compare_lookups("dense haze, one channel, unscattered light", enlist(haze, trackers, true, false),
+  compare_lookups("dense haze, one channel, unscattered light",
+                  enlist(haze, kTrackers, true, false), haze_rays);
+  compare_lookups("dense haze, one channel, transmittance", enlist(haze, kEstimators, false, false),
                   haze_rays);
-  compare_lookups("dense haze, one channel, transmittance", enlist(haze, estimators, false, false),
-                  haze_rays);
-  return 0;
+  same &= compare_spectral_costs("chromatic 512^3 cloud", cloud);
+  same &= compare_spectral_costs("chromatic haze", haze);
+  return same ? 0 : 1;
 }
 
 }  // namespace

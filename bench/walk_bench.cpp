@@ -5,7 +5,6 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <exception>
 #include <memory>
 #include <ranges>
@@ -15,6 +14,7 @@
 #include "bench/cloud.h"
 #include "bench/nanovdb_walk.h"
 #include "bench/summary.h"
+#include "bench/timing.h"
 #include "freepath/transport/walker.h"
 
 namespace freepath::bench {
@@ -120,13 +120,6 @@ std::vector<Row> make_rows(const Problem& problem, Estimate estimate) {
     }
   }
   return rows;
-}
-
-/// Time that this thread has run: what else the machine does counts as little as can be.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
 void time_variant(benchmark::State& state, Variant& variant,
