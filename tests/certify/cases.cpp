@@ -47,8 +47,13 @@ class CaseSpace {
  public:
   explicit CaseSpace(bool free_paths)
       : free_paths_(free_paths), variants_(certified_variants(free_paths)) {
-    counts_ = {static_cast<int>(variants_.size()), static_cast<int>(certified_media().size()), 3,
-               2, 2, free_paths ? 2 : 1, free_paths ? 2 : 1};
+    counts_ = {static_cast<int>(variants_.size()),
+               static_cast<int>(certified_media().size()),
+               3,
+               2,
+               2,
+               free_paths ? 2 : 1,
+               free_paths ? 2 : 1};
     possible_.resize(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2] * counts_[3]);
     Levels levels{};
     do possible_[place(levels)] = !reason_against(make(levels));

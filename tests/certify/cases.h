@@ -12,14 +12,14 @@
 namespace freepath::testing {
 
 struct CertifiedCase {
-  std::string method;          ///< With its options.
-  bool free_paths = true;      ///< A tracker, else a transmittance estimator.
-  std::size_t medium = 0;      ///< Place in certified_media().
+  std::string method;      ///< With its options.
+  bool free_paths = true;  ///< A tracker, else a transmittance estimator.
+  std::size_t medium = 0;  ///< Place in certified_media().
   Interpolation interpolation = Interpolation::kNearest;
-  bool tight = true;           ///< Bounds as super-voxels give them, else loose ones.
+  bool tight = true;  ///< Bounds as super-voxels give them, else loose ones.
   Absorption absorption = Absorption::kWeighted;
   EmissionTally emission = EmissionTally::kCollision;
-  bool one_lane = false;       ///< The scalar walk, else the widest lanes of the machine.
+  bool one_lane = false;  ///< The scalar walk, else the widest lanes of the machine.
 
   const Medium& walked_medium() const { return certified_media()[medium].with_bounds(tight); }
   WalkSettings settings() const;

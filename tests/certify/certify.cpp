@@ -53,9 +53,10 @@ int run(const Options& options) {
                  check.estimate, check.standard_error, check.exact, check.z);
     }
   }
-  fmt::print("{} cases, {} comparisons, {} rare, {} heavy; |z| up to {:.2f} passes; {} cases fail\n",
-             cases.size(), verdict.tested, verdict.rare, verdict.heavy, verdict.threshold,
-             verdict.failed.size());
+  fmt::print(
+      "{} cases, {} comparisons, {} rare, {} heavy; |z| up to {:.2f} passes; {} cases fail\n",
+      cases.size(), verdict.tested, verdict.rare, verdict.heavy, verdict.threshold,
+      verdict.failed.size());
   if (!options.output.empty()) {
     write_report(options.output,
                  options.full ? "Certification: every case" : "Certification: all pairs", results,

@@ -62,8 +62,7 @@ struct Moments {
     const double spread = variance(paths);
     const double mean = sum / paths;
     if (spread <= 1e-10 * mean * mean) return 0;
-    const double third =
-        cubes / paths - 3 * mean * squares / paths + 2 * mean * mean * mean;
+    const double third = cubes / paths - 3 * mean * squares / paths + 2 * mean * mean * mean;
     const double fourth = fourths / paths - 4 * mean * cubes / paths +
                           6 * mean * mean * squares / paths - 3 * std::pow(mean, 4);
     const double skewness = third / (spread * std::sqrt(spread));
@@ -162,10 +161,9 @@ class Measurement {
           const Component& component = components[k];
           const double hit = node.width * node.transmittance[channel] * node.density[k];
           scattered += hit * component.sigma_s[channel];
-          exact.radiance +=
-              hit * (component.sigma_a[channel] * component.emission[channel] +
-                     component.sigma_s[channel] *
-                         scattered_radiance(static_cast<int>(k), channel, node.t));
+          exact.radiance += hit * (component.sigma_a[channel] * component.emission[channel] +
+                                   component.sigma_s[channel] *
+                                       scattered_radiance(static_cast<int>(k), channel, node.t));
         }
       });
       exact.bins.push_back(scattered);
@@ -183,9 +181,9 @@ class Measurement {
       const auto n = static_cast<double>(pilot_paths);
       const Moments& pilot = tallies_[channel].radiance;
       const double error = budget_.relative_error * std::max(1e-3, exact_[channel].radiance);
-      wanted = std::max({wanted, pilot.variance(n) / (error * error),
-                         pilot.paths_for_normal_mean(n),
-                         tallies_[channel].escaped.paths_for_normal_mean(n)});
+      wanted =
+          std::max({wanted, pilot.variance(n) / (error * error), pilot.paths_for_normal_mean(n),
+                    tallies_[channel].escaped.paths_for_normal_mean(n)});
     }
     const double work = static_cast<double>(statistics.lookups + statistics.super_voxel_steps) /
                         static_cast<double>(pilot_paths);
@@ -206,8 +204,8 @@ class Measurement {
       const Walker walker(medium_, settings_, shared_ ? Walker::kAllChannels : turn);
       for (uint64_t done = 0; done < paths; done += kBatch) {
         const std::size_t count = std::min<uint64_t>(kBatch, paths - done);
-        RayStream rays = repeat_ray(ray_.origin, ray_.direction, ray_.t_max, count,
-                                    static_cast<uint32_t>(done));
+        RayStream rays =
+            repeat_ray(ray_.origin, ray_.direction, ray_.t_max, count, static_cast<uint32_t>(done));
         std::fill(rays.pixel.begin(), rays.pixel.end(), pixel);
         if (test_.free_paths) {
           walker.free_paths(rays, flights, statistics);
@@ -302,9 +300,11 @@ class Measurement {
     }
     // Where all paths end in bins with the same weight, the last distance follows from the others.
     const bool complete = 1 - inner < 1e-3;
-    const double statistic = paths * (complete ? distance : distance + across * across / (1 - inner));
+    const double statistic =
+        paths * (complete ? distance : distance + across * across / (1 - inner));
     const double degrees = static_cast<double>(complete ? freedom - 1 : freedom);
-    if (degrees > 0) check.z = std::max(check.z, z_of_p(upper_gamma(0.5 * degrees, 0.5 * statistic)));
+    if (degrees > 0)
+      check.z = std::max(check.z, z_of_p(upper_gamma(0.5 * degrees, 0.5 * statistic)));
     return check;
   }
 

@@ -11,7 +11,7 @@ namespace freepath::testing {
 
 /// How many paths a case may take.
 struct CertifyBudget {
-  double relative_error = 0.004;  ///< Of the radiance or transmittance, if within reach.
+  double relative_error = 0.004;            ///< Of the radiance or transmittance, if within reach.
   uint64_t most_paths = uint64_t{1} << 18;  ///< Of cheap ones; costly ones are fewer.
 };
 
@@ -36,9 +36,9 @@ struct Check {
 struct CaseResult {
   CertifiedCase test;
   std::vector<Check> checks;
-  uint64_t paths = 0;    ///< Of each channel that takes its own.
-  double lookups = 0;    ///< A path.
-  double variance = 0;   ///< Of the radiance or transmittance of one path, mean over channels.
+  uint64_t paths = 0;   ///< Of each channel that takes its own.
+  double lookups = 0;   ///< A path.
+  double variance = 0;  ///< Of the radiance or transmittance of one path, mean over channels.
   WalkStatistics statistics;
 };
 

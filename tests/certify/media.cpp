@@ -103,8 +103,7 @@ class MediaList {
     media_.push_back({name, std::move(tight), std::move(loose), ray});
   }
   /// One component, its optical thickness in the thickest channel scaled to what is wanted.
-  void add_thick(const char* name, double thickness, Component component,
-                 const CertifiedRay& ray) {
+  void add_thick(const char* name, double thickness, Component component, const CertifiedRay& ray) {
     const RayProfile profile(Medium({component}), ray, Interpolation::kNearest);
     double present = 0;
     for (int channel = 0; channel < kChannels; ++channel) {
@@ -140,16 +139,16 @@ void add_lines(MediaList& list) {
            {make_component(line(64, [](double x) { return x < 0.4 ? 0.3 : 1.7; }), kGreyAbsorption,
                            kGreyScattering)},
            along_line());
-  list.add("ramp",
-           {make_component(line(64, [](double x) { return 2 * x; }), kRedAbsorption,
-                           kRedScattering)},
-           along_line());
+  list.add(
+      "ramp",
+      {make_component(line(64, [](double x) { return 2 * x; }), kRedAbsorption, kRedScattering)},
+      along_line());
   list.add("zeros",
            {make_component(line(96,
                                 [](double x) {
-                                  return x < 0.2 || (x > 0.5 && x < 0.7)
-                                             ? 0.0
-                                             : std::abs(std::sin(40 * x)) < 0.3 ? 0.0 : 2.0;
+                                  return x < 0.2 || (x > 0.5 && x < 0.7)    ? 0.0
+                                         : std::abs(std::sin(40 * x)) < 0.3 ? 0.0
+                                                                            : 2.0;
                                 }),
                            kRedAbsorption, kRedScattering)},
            along_line());

@@ -1,6 +1,6 @@
 #pragma once
-/// @file What quadrature knows of a ray: the exact side of the certifying suite. It reads voxels and
-/// coefficients by itself and shares no code with the walks.
+/// @file What quadrature knows of a ray: the exact side of the certifying suite. It reads voxels
+/// and coefficients by itself and shares no code with the walks.
 
 #include <array>
 #include <functional>

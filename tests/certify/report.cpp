@@ -19,11 +19,11 @@ std::string row(const CaseResult& result, double threshold) {
   const std::size_t counted =
       std::count_if(result.checks.begin(), result.checks.end(),
                     [](const Check& check) { return check.standing == Standing::kTested; });
-  return fmt::format("| {} | {} | {:.6g} ± {:.1g} | {:.6g} | {:.2f} of {}{} | {} | {:.3g} | {:.3g} |\n",
-                     certified_media()[result.test.medium].name, result.test.modes(),
-                     first.estimate, first.standard_error, first.exact, z, counted,
-                     z > threshold ? " **fails**" : "", result.paths, result.lookups,
-                     result.variance);
+  return fmt::format(
+      "| {} | {} | {:.6g} ± {:.1g} | {:.6g} | {:.2f} of {}{} | {} | {:.3g} | {:.3g} |\n",
+      certified_media()[result.test.medium].name, result.test.modes(), first.estimate,
+      first.standard_error, first.exact, z, counted, z > threshold ? " **fails**" : "",
+      result.paths, result.lookups, result.variance);
 }
 
 }  // namespace

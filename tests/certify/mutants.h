@@ -1,0 +1,39 @@
+#pragma once
+/// @file Walks whose methods have an error planted in their weights, to show that tests notice it.
+
+#include <array>
+#include <ostream>
+#include <string_view>
+#include <vector>
+
+#include "freepath/transport/kernels.h"
+
+namespace freepath::testing {
+
+/// Factors on mu_a, mu_s and mu_n in the weight alone: probabilities stay as they are. 1 plants
+/// nothing.
+struct PlantedFactors {
+  float absorption = 1;  ///< On the tally of emission, and on the weight of an absorption.
+  float scattering = 1;
+  float null = 1;
+};
+
+/// A null-collision method of the registry that takes PlantedFactors.
+struct Mutant {
+  std::string_view name;
+  bool free_paths = true;
+  int channels = 1;  ///< That it is compiled for.
+  WalkFunction walk = nullptr;
+
+  /// What `walk` takes for options: the standard ones, and the factors.
+  using Options = std::array<float, kMaxMethodOptions + 3>;
+  Options options(const PlantedFactors& planted) const;
+};
+
+/// How GoogleTest names one.
+inline void PrintTo(const Mutant& mutant, std::ostream* out) { *out << mutant.name; }
+
+/// All of them.
+std::vector<Mutant> mutants();
+
+}  // namespace freepath::testing
