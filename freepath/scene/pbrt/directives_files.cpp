@@ -50,7 +50,8 @@ void SceneParser::import_file(const SourceLocation& location) {
   const std::size_t outside = std::exchange(scopes_outside_import_, scopes_.size());
   parse_file(name, location);
   if (scopes_.size() > scopes_outside_import_) {
-    fail_at(scopes_.back().location, "this is never closed in the imported file");
+    const OpenScope& open = scopes_.back();
+    fail_at(open.location, "this {} is never closed in the imported file", begin_of(open.scope));
   }
   scopes_outside_import_ = outside;
   coordinate_systems_ = coordinate_systems;

@@ -7,13 +7,22 @@
 #include "freepath/scene/pbrt/scene_parser.h"
 
 namespace freepath {
-namespace {
 
-struct ScopeNames {
-  std::string_view begin, end;
-};
+std::string_view SceneParser::begin_of(Scope scope) {
+  switch (scope) {
+    case Scope::kAttribute: return "AttributeBegin";
+    case Scope::kTransform: return "TransformBegin";
+    default: return "ObjectBegin";
+  }
+}
 
-}  // namespace
+std::string_view SceneParser::end_of(Scope scope) {
+  switch (scope) {
+    case Scope::kAttribute: return "AttributeEnd";
+    case Scope::kTransform: return "TransformEnd";
+    default: return "ObjectEnd";
+  }
+}
 
 void SceneParser::open_scope(Scope scope, const SourceLocation& location) {
   if (static_cast<int>(scopes_.size()) >= limits_.attribute_depth) {
@@ -24,19 +33,13 @@ void SceneParser::open_scope(Scope scope, const SourceLocation& location) {
 }
 
 void SceneParser::close_scope(Scope scope, const SourceLocation& location) {
-  const auto names = [](Scope of) -> ScopeNames {
-    if (of == Scope::kAttribute) return {"AttributeBegin", "AttributeEnd"};
-    if (of == Scope::kObject) return {"ObjectBegin", "ObjectEnd"};
-    return {"TransformBegin", "TransformEnd"};
-  };
-  const ScopeNames closing = names(scope);
   if (scopes_.size() <= scopes_outside_import_) {
-    fail_at(location, "this {} has no {}", closing.end, closing.begin);
+    fail_at(location, "this {} has no {}", end_of(scope), begin_of(scope));
   }
   const OpenScope& open = scopes_.back();
   if (open.scope != scope) {
-    fail_at(location, "expected {} for the {} in line {}, found {}", names(open.scope).end,
-            names(open.scope).begin, open.location.line, closing.end);
+    fail_at(location, "expected {} for the {} in line {}, found {}", end_of(open.scope),
+            begin_of(open.scope), open.location.line, end_of(scope));
   }
   state_ = std::move(scopes_.back().state);
   scopes_.pop_back();

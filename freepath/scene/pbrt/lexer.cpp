@@ -9,9 +9,8 @@
 namespace freepath {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\n\r\f\v";
-constexpr std::string_view kEndsOfWords = " \t\n\r\f\v\"[]#";
-
+bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool ends_word(char c) { return is_blank(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
@@ -100,7 +99,7 @@ void Lexer::skip_blanks() {
   while (!rest_.empty()) {
     if (rest_[0] == '#') {
       advance(std::min(rest_.find('\n'), rest_.size()));
-    } else if (kBlanks.find(rest_[0]) != std::string_view::npos) {
+    } else if (is_blank(rest_[0])) {
       advance(1);
     } else {
       return;
@@ -145,9 +144,11 @@ void Lexer::read_string(Token& token) {
 }
 
 void Lexer::read_word(Token& token) {
-  token.source = rest_.substr(0, rest_.find_first_of(kEndsOfWords));
+  const auto* const end = std::ranges::find_if(rest_, ends_word);
+  token.source = rest_.substr(0, static_cast<std::size_t>(end - rest_.begin()));
   const char first = token.source[0];
-  if (is_non_finite(token.source)) {
+  // No spelling of NaN or infinity ends with a digit, and most numbers do.
+  if (!is_digit(token.source.back()) && is_non_finite(token.source)) {
     fail_at(location(token), "{} is not a finite number", in_quotes(token.source));
   }
   if (is_digit(first) || first == '+' || first == '-' || first == '.') {

@@ -70,10 +70,7 @@ PbrtScene SceneParser::parse(std::string text, const std::string& name) {
   const SourceLocation end = lexer.location(lexer.peek());
   if (!scopes_.empty()) {
     const OpenScope& open = scopes_.back();
-    fail_at(open.location, "this {} is never closed",
-            open.scope == Scope::kObject      ? "ObjectBegin"
-            : open.scope == Scope::kAttribute ? "AttributeBegin"
-                                              : "TransformBegin");
+    fail_at(open.location, "this {} is never closed", begin_of(open.scope));
   }
   if (!in_world_) fail_at(end, "the scene has no WorldBegin");
   resolve_references();
@@ -128,7 +125,12 @@ void SceneParser::expect_numbers(double* numbers, int count, std::string_view wh
   const bool bracketed = lexer_->peek().kind == TokenKind::kOpenBracket;
   if (bracketed) lexer_->next();
   for (int i = 0; i < count; ++i) {
-    numbers[i] = expect_number(fmt::format("number {} of the {} of {}", i + 1, count, what));
+    const Token token = lexer_->next();
+    if (token.kind != TokenKind::kNumber) {
+      fail_at(lexer_->location(token), "expected number {} of the {} of {}, found {}", i + 1, count,
+              what, describe(token));
+    }
+    numbers[i] = token.number;
   }
   if (!bracketed) return;
   const Token close = lexer_->next();
@@ -163,15 +165,22 @@ ParameterList SceneParser::expect_parameters(const std::string& owner,
   return list;
 }
 
+Token SceneParser::expect_type(std::string_view directive) {
+  Token type = lexer_->next();
+  if (type.kind == TokenKind::kString) return type;
+  fail_at(lexer_->location(type), "expected the type of {} as a string, found {}", directive,
+          describe(type));
+}
+
 PbrtEntity SceneParser::expect_entity(std::string_view directive, const SourceLocation& location) {
-  const Token type = expect_string(fmt::format("the type of {}", directive));
+  const Token type = expect_type(directive);
   const std::string owner = fmt::format("{} {}", directive, in_quotes(type.text));
   return {type.text, location, expect_parameters(owner, location)};
 }
 
 PbrtEntity SceneParser::expect_entity(std::string_view directive, const SourceLocation& location,
                                       AttributeTarget target) {
-  const Token type = expect_string(fmt::format("the type of {}", directive));
+  const Token type = expect_type(directive);
   const std::string owner = fmt::format("{} {}", directive, in_quotes(type.text));
   return {type.text, location, expect_parameters(owner, location, target)};
 }

@@ -71,6 +71,7 @@ class SceneParser {
   void parse_directives(Lexer& lexer);
   void run_directive(const Token& token, const SourceLocation& location);
   Token expect_string(std::string_view what);
+  Token expect_type(std::string_view directive);
   double expect_number(std::string_view what);
   void expect_numbers(double* numbers, int count, std::string_view what);
   Vec3d expect_vector(std::string_view what);
@@ -131,6 +132,8 @@ class SceneParser {
   void object_instance(const SourceLocation& location);
   void open_scope(Scope scope, const SourceLocation& location);
   void close_scope(Scope scope, const SourceLocation& location);
+  static std::string_view begin_of(Scope scope);
+  static std::string_view end_of(Scope scope);
   void warn_of_transform_scopes(const SourceLocation& location);
 
   // directives_world.cpp
