@@ -82,10 +82,10 @@ TEST(Lexer, RefusesWhatIsNoNumber) {
 
 TEST(Lexer, ReplacesEscapes) {
   EXPECT_EQ(tokens_of(R"("a\"b\\c\n\t\r\b\f\'")")[0].text, "a\"b\\c\n\t\r\b\f'");
-  EXPECT_EQ(tokens_of("\"\"")[0].text, "");
-  EXPECT_EQ(tokens_of("\"# no comment\"")[0].text, "# no comment");
-  EXPECT_NE(lexer_error(R"(x "ab\q")").find("text:1:6: unknown escape '\\q'"), std::string::npos);
-  EXPECT_NE(lexer_error("\"ab\\").find("text:1:1: this string is not closed"), std::string::npos);
+  EXPECT_EQ(tokens_of(R"("")")[0].text, "");
+  EXPECT_EQ(tokens_of(R"("# no comment")")[0].text, "# no comment");
+  EXPECT_NE(lexer_error(R"(x "ab\q")").find(R"(text:1:6: unknown escape '\q')"), std::string::npos);
+  EXPECT_NE(lexer_error(R"("ab\)").find("text:1:1: this string is not closed"), std::string::npos);
   EXPECT_NE(lexer_error("x\n \"ab\n\"").find("text:2:2: this string is not closed"),
             std::string::npos);
 }
@@ -113,7 +113,7 @@ TEST(EditDistance, FindsTheNearestNameIfAnyIsNear) {
 }
 
 TEST(Messages, AreOneLineThatCanBePrinted) {
-  EXPECT_EQ(in_quotes("a\nb\x01\xff"), "'a\\x0ab\\x01\\xff'");
+  EXPECT_EQ(in_quotes("a\nb\x01\xff"), R"('a\x0ab\x01\xff')");
   EXPECT_EQ(in_quotes(std::string(100, 'x')), "'" + std::string(60, 'x') + "...'");
 }
 

@@ -15,8 +15,7 @@ namespace {
 /// The parameters of a shape.
 ParameterList parameters_of(const std::string& text,
                             const std::map<std::string, std::string>& files = {}) {
-  return parse("WorldBegin Texture \"marble\" \"spectrum\" \"marble\" Shape \"thing\" " + text,
-               files)
+  return parse(R"(WorldBegin Texture "marble" "spectrum" "marble" Shape "thing" )" + text, files)
       .shapes.at(0)
       .parameters;
 }

@@ -30,9 +30,9 @@ std::string gzip(const std::string& text) {
 
 TEST(SceneFiles, IncludeTakesPartInTheState) {
   const PbrtScene scene = parse(
-      "Include \"view.pbrt\" WorldBegin AttributeBegin Include \"a.pbrt\" "
-      "Shape \"sphere\" AttributeEnd Shape \"sphere\"",
-      {{"view.pbrt", "Translate 0 0 1 Camera \"perspective\""}, {"a.pbrt", "Translate 1 0 0"}});
+      R"(Include "view.pbrt" WorldBegin AttributeBegin Include "a.pbrt" )"
+      R"(Shape "sphere" AttributeEnd Shape "sphere")",
+      {{"view.pbrt", R"(Translate 0 0 1 Camera "perspective")"}, {"a.pbrt", "Translate 1 0 0"}});
   EXPECT_EQ(scene.camera->camera_from_world.start, translation(Vec3d(0, 0, 1)));
   EXPECT_EQ(to_string(scene.camera->location), "view.pbrt:1:17");
   EXPECT_EQ(scene.shapes.at(0).world_from_object.start, translation(Vec3d(1, 0, 0)));
@@ -40,26 +40,25 @@ TEST(SceneFiles, IncludeTakesPartInTheState) {
 }
 
 TEST(SceneFiles, ImportLeavesTheStateAlone) {
-  const PbrtScene scene =
-      parse("WorldBegin Translate 1 0 0 Import \"a.pbrt\" Shape \"disk\" NamedMaterial \"m\"",
-            {{"a.pbrt",
-              "Translate 0 1 0 ReverseOrientation CoordinateSystem \"inner\" Shape \"sphere\" "
-              "MakeNamedMaterial \"m\" \"string type\" \"diffuse\""}});
+  const PbrtScene scene = parse(
+      R"(WorldBegin Translate 1 0 0 Import "a.pbrt" Shape "disk" NamedMaterial "m")",
+      {{"a.pbrt", R"(Translate 0 1 0 ReverseOrientation CoordinateSystem "inner" Shape "sphere" )"
+                  R"(MakeNamedMaterial "m" "string type" "diffuse")"}});
   EXPECT_EQ(scene.shapes.at(0).world_from_object.start, translation(Vec3d(1, 1, 0)));
   EXPECT_EQ(scene.shapes.at(1).world_from_object.start, translation(Vec3d(1, 0, 0)));
   EXPECT_FALSE(scene.shapes.at(1).reverse_orientation);
-  EXPECT_NE(error_of("WorldBegin Import \"a.pbrt\" CoordSysTransform \"inner\"",
-                     {{"a.pbrt", "CoordinateSystem \"inner\""}}),
+  EXPECT_NE(error_of(R"(WorldBegin Import "a.pbrt" CoordSysTransform "inner")",
+                     {{"a.pbrt", R"(CoordinateSystem "inner")"}}),
             "");
 }
 
 TEST(SceneFiles, AreSoughtBesideTheFileThatNamesThem) {
   const std::map<std::string, std::string> files = {
-      {"parts/a.pbrt", "Include \"b.pbrt\" Include \"parts/b.pbrt\" Include \"../c.pbrt\""},
-      {"parts/b.pbrt", "Shape \"sphere\""},
-      {"b.pbrt", "Shape \"disk\""},
-      {"c.pbrt", "Shape \"cylinder\""}};
-  const PbrtScene scene = parse("WorldBegin Include \"parts/a.pbrt\"", files);
+      {"parts/a.pbrt", R"(Include "b.pbrt" Include "parts/b.pbrt" Include "../c.pbrt")"},
+      {"parts/b.pbrt", R"(Shape "sphere")"},
+      {"b.pbrt", R"(Shape "disk")"},
+      {"c.pbrt", R"(Shape "cylinder")"}};
+  const PbrtScene scene = parse(R"(WorldBegin Include "parts/a.pbrt")", files);
   ASSERT_EQ(scene.shapes.size(), 3U);
   EXPECT_EQ(scene.shapes[0].type, "sphere");  // parts/b.pbrt, not the one beside the main file.
   EXPECT_EQ(scene.shapes[1].type, "sphere");  // Where pbrt looks: from the main file.
@@ -72,11 +71,11 @@ TEST(SceneFiles, MayBePacked) {
   const std::string packed = gzip(text);
   EXPECT_LT(packed.size(), text.size() / 10);
   EXPECT_EQ(parse(packed).shapes.size(), 20000U);
-  EXPECT_EQ(parse("WorldBegin Include \"s.pbrt.gz\"", {{"s.pbrt.gz", gzip("Shape \"disk\"")}})
+  EXPECT_EQ(parse(R"(WorldBegin Include "s.pbrt.gz")", {{"s.pbrt.gz", gzip(R"(Shape "disk")")}})
                 .shapes.size(),
             1U);
   // Two members one after the other, as `cat a.gz b.gz` makes them.
-  EXPECT_EQ(parse(gzip("WorldBegin ") + gzip("Shape \"disk\"")).shapes.size(), 1U);
+  EXPECT_EQ(parse(gzip("WorldBegin ") + gzip(R"(Shape "disk")")).shapes.size(), 1U);
   EXPECT_EQ(error_of(gzip("WorldBegin\nNothing")),
             "scene.pbrt:2:1: there is no directive 'Nothing'");
 }
@@ -103,8 +102,8 @@ TEST(SceneFiles, AreReadFromDisk) {
   const std::filesystem::path folder =
       std::filesystem::path(::testing::TempDir()) / "freepath_scene_files";
   std::filesystem::create_directories(folder / "parts");
-  std::ofstream(folder / "main.pbrt") << "WorldBegin Include \"parts/a.pbrt\"";
-  std::ofstream(folder / "parts" / "a.pbrt") << "Shape \"sphere\"";
+  std::ofstream(folder / "main.pbrt") << R"(WorldBegin Include "parts/a.pbrt")";
+  std::ofstream(folder / "parts" / "a.pbrt") << R"(Shape "sphere")";
   Diagnostics diagnostics;
   EXPECT_EQ(parse_pbrt_file(folder / "main.pbrt", diagnostics).shapes.size(), 1U);
   for (const char* name : {"missing.pbrt", "parts"}) {

@@ -117,7 +117,7 @@ TEST(SceneParser, KnowsTransformScopesAndWarnsOnce) {
   Diagnostics diagnostics;
   const PbrtScene scene = parse(
       "WorldBegin\n TransformBegin Translate 1 2 3 TransformEnd\n"
-      "TransformBegin TransformEnd Shape \"sphere\"",
+      R"(TransformBegin TransformEnd Shape "sphere")",
       diagnostics);
   EXPECT_EQ(scene.shapes.at(0).world_from_object.start, Matrix4d());
   ASSERT_EQ(diagnostics.warnings().size(), 1U);

@@ -13,7 +13,7 @@ namespace freepath::testing {
 namespace {
 
 PbrtShape shape_after(const std::string& directives) {
-  return parse("WorldBegin " + directives + " Shape \"sphere\"").shapes.at(0);
+  return parse("WorldBegin " + directives + R"( Shape "sphere")").shapes.at(0);
 }
 
 Matrix4d transform_after(const std::string& directives) {
@@ -58,7 +58,7 @@ TEST(Transforms, ApplyTheLastDirectiveToPointsFirst) {
 
 TEST(Transforms, LookAtGivesCoordinatesThatACameraSees) {
   // From (4, 2, 0) towards -x with z up: ahead is -x, right is up × ahead = z × -x = -y.
-  const PbrtScene scene = parse("LookAt 4 2 0  0 2 0  0 0 1 Camera \"perspective\" WorldBegin");
+  const PbrtScene scene = parse(R"(LookAt 4 2 0  0 2 0  0 0 1 Camera "perspective" WorldBegin)");
   const Matrix4d camera_from_world = scene.camera->camera_from_world.start;
   expect_near(camera_from_world, {0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 2, 0, 4, 1});
   EXPECT_TRUE((Vec3d(4, 2, 0) * camera_from_world).equalWithAbsError(Vec3d(0), 1e-14));
@@ -67,16 +67,15 @@ TEST(Transforms, LookAtGivesCoordinatesThatACameraSees) {
 }
 
 TEST(Transforms, BeforeTheCameraStackUp) {
-  const PbrtScene scene = parse("Scale -1 1 1 Translate 0 0 5 Camera \"perspective\" WorldBegin");
+  const PbrtScene scene = parse(R"(Scale -1 1 1 Translate 0 0 5 Camera "perspective" WorldBegin)");
   expect_near(scene.camera->camera_from_world.start,
               {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1});
 }
 
 TEST(Transforms, OfCameraAndWorldHaveNames) {
-  const std::string view = "LookAt 4 2 0  0 2 0  0 0 1 Camera \"perspective\" WorldBegin ";
-  const PbrtScene scene = parse(view +
-                                "CoordSysTransform \"camera\" Shape \"sphere\" "
-                                "CoordSysTransform \"world\" Shape \"sphere\"");
+  const std::string view = R"(LookAt 4 2 0  0 2 0  0 0 1 Camera "perspective" WorldBegin )";
+  const PbrtScene scene = parse(view + R"(CoordSysTransform "camera" Shape "sphere" )"
+                                       R"(CoordSysTransform "world" Shape "sphere")");
   // The inverse of the matrix above: rows are right, up and ahead, then the position.
   expect_near(scene.shapes.at(0).world_from_object.start,
               {0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 4, 2, 0, 1});
@@ -84,8 +83,8 @@ TEST(Transforms, OfCameraAndWorldHaveNames) {
 }
 
 TEST(Transforms, CanBeNamedAndFetched) {
-  expect_near(transform_after("Translate 1 2 3 CoordinateSystem \"here\" Scale 2 2 2 "
-                              "CoordSysTransform \"here\""),
+  expect_near(transform_after(R"(Translate 1 2 3 CoordinateSystem "here" Scale 2 2 2 )"
+                              R"(CoordSysTransform "here")"),
               {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
 }
 
@@ -98,7 +97,7 @@ TEST(Transforms, MoveWhereOnlyOneTimeIsActive) {
   expect_near(moving.world_from_object.end, {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 0, 2, 1});
   const PbrtScene scene = parse(
       "TransformTimes 0.25 0.75 ActiveTransform EndTime WorldBegin "
-      "Translate 1 0 0 Shape \"sphere\"");
+      R"(Translate 1 0 0 Shape "sphere")");
   EXPECT_EQ(scene.start_time, 0.25);
   EXPECT_EQ(scene.end_time, 0.75);
   EXPECT_FALSE(scene.shapes.at(0).world_from_object.is_animated());

@@ -10,17 +10,23 @@ namespace freepath {
 
 std::string_view SceneParser::begin_of(Scope scope) {
   switch (scope) {
-    case Scope::kAttribute: return "AttributeBegin";
-    case Scope::kTransform: return "TransformBegin";
-    default: return "ObjectBegin";
+    case Scope::kAttribute:
+      return "AttributeBegin";
+    case Scope::kTransform:
+      return "TransformBegin";
+    default:
+      return "ObjectBegin";
   }
 }
 
 std::string_view SceneParser::end_of(Scope scope) {
   switch (scope) {
-    case Scope::kAttribute: return "AttributeEnd";
-    case Scope::kTransform: return "TransformEnd";
-    default: return "ObjectEnd";
+    case Scope::kAttribute:
+      return "AttributeEnd";
+    case Scope::kTransform:
+      return "TransformEnd";
+    default:
+      return "ObjectEnd";
   }
 }
 
