@@ -105,6 +105,12 @@ void check_constant(const Medium& medium, int k, const Vec3i& low, const Vec3i& 
 /// Homogeneous within its bounds, and not softened there.
 void check_closed_form(const Medium& medium, Interpolation interpolation) {
   check_voxels<ClosedForm>(medium, interpolation);
+  if (!medium.aligned()) {
+    fail(
+        "'closed-form' needs a homogeneous medium: grid '{}' and another differ in transform or "
+        "bounds; take 'regular', or a null-collision method",
+        medium.components()[0].density->name);
+  }
   Vec3i low = medium.components()[0].density->voxels.active_min();
   Vec3i high = medium.components()[0].density->voxels.active_max();
   for (const Component& component : medium.components()) {
