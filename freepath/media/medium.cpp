@@ -81,7 +81,7 @@ Medium::WalkCells mark_empty_cells(const SuperVoxels& cells) {
 }  // namespace
 
 Medium::Medium(std::vector<Component> components, int super_voxel,
-               std::optional<Matrix4d> world_to_index)
+               const std::optional<Matrix4d>& world_to_index)
     : components_(std::move(components)) {
   if (components_.empty() || components_.size() > kMaxComponents) {
     fail("a medium has 1 to {} components, not {}", kMaxComponents, components_.size());

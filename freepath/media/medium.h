@@ -55,7 +55,7 @@ class Medium {
   /// @throws Error for coefficients that are negative or not finite, |g| >= 1, too many components,
   ///   an empty field, and as make_walk_space
   explicit Medium(std::vector<Component> components, int super_voxel = 0,
-                  std::optional<Matrix4d> world_to_index = {});
+                  const std::optional<Matrix4d>& world_to_index = {});
 
   const std::vector<Component>& components() const { return components_; }
   const SuperVoxels& super_voxels() const { return super_voxels_; }

@@ -163,6 +163,7 @@ void fill_empty_radius(SuperVoxels& cells) {
           int32_t* first =
               radius.data() + a * strides[(axis + 1) % 3] + b * strides[(axis + 2) % 3];
           for (int i = 0; i < length; ++i) line[i] = first[i * stride];
+          if (*std::min_element(line.begin(), line.end()) == kFar) continue;
           // min over j of max(|i-j|, line[j]); lines are short and the search stops early.
           for (int i = 0; i < length; ++i) {
             int32_t best = line[i];

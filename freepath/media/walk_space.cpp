@@ -14,7 +14,7 @@ constexpr int kMostVoxels = 1 << 23;
 /// bounds of super-voxels are dilated; see PlacedVoxels.
 constexpr int kMostVoxelsApart = 1 << 20;
 
-bool share_layout(const Field& a, const Field& b) {
+bool have_one_layout(const Field& a, const Field& b) {
   return a.index_to_world == b.index_to_world && a.voxels.origin() == b.voxels.origin() &&
          a.voxels.brick_counts() == b.voxels.brick_counts();
 }
@@ -79,7 +79,7 @@ void check_inverse(const Field& field) {
 void check_extent(const Box3d& bounds, const WalkSpace& space, std::span<const Field* const> fields,
                   const Field& finest) {
   for (std::size_t k = 0; k < fields.size(); ++k) {
-    Matrix4d map = index_to_index(space.index_to_world, fields[k]->index_to_world);
+    const Matrix4d map = index_to_index(space.index_to_world, fields[k]->index_to_world);
     const Vec3d size = transformed(bounds, map).size();
     const Vec3d own = bounds.size();
     const double longest = std::max({size.x, size.y, size.z, own.x, own.y, own.z});
@@ -135,11 +135,31 @@ Box3d WalkSpace::bounds(std::span<const Field* const> fields, double reach) cons
   return box;
 }
 
+void share_layout(std::span<Field* const> fields) {
+  Vec3i first = fields[0]->voxels.origin();
+  Vec3i last = first;
+  double entries = 0;
+  for (const Field* field : fields) {
+    if (field->function || field->index_to_world != fields[0]->index_to_world) return;
+    const BrickMap& map = field->voxels;
+    entries += static_cast<double>(map.index().size());
+    for (int axis = 0; axis < 3; ++axis) {
+      const int end = map.origin()[axis] + map.brick_counts()[axis] * BrickMap::kBrickSize;
+      first[axis] = std::min(first[axis], map.origin()[axis]);
+      last[axis] = std::max(last[axis], end);
+    }
+  }
+  const Vec3d extent = (Vec3d(last) - Vec3d(first)) / BrickMap::kBrickSize;
+  constexpr double kMostEmpty = 8;  // entries for each that there is now
+  if (extent.x * extent.y * extent.z > kMostEmpty * entries) return;
+  for (Field* field : fields) field->voxels.widen_index(first, Vec3i(extent));
+}
+
 WalkSpace make_walk_space(std::span<const Field* const> fields) {
   check_lengths(fields);
   const Field& first = *fields[0];
   if (!std::all_of(fields.begin(), fields.end(),
-                   [&](const Field* field) { return share_layout(*field, first); })) {
+                   [&](const Field* field) { return have_one_layout(*field, first); })) {
     return common_space(fields);
   }
   WalkSpace space;

@@ -28,6 +28,11 @@ struct WalkSpace {
   Box3d bounds(std::span<const Field* const> fields, double reach) const;
 };
 
+/// Gives fields that share one transform one layout of bricks as well, which makes walks through
+/// them faster; leaves them as they are where their transforms differ, or where they lie so far
+/// apart that the index would hold little but nothing.
+void share_layout(std::span<Field* const> fields);
+
 /// The layout of the fields where they share one; else the index axes of the finest of them, over
 /// all that the trilinear filter can reach.
 /// @throws Error naming the grid: transforms that have no inverse where that is needed; fields so

@@ -8,6 +8,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
+#include "freepath/media/walk_space.h"
 #include "freepath/render/sky.h"
 
 namespace freepath {
@@ -131,6 +132,11 @@ void check_optical_depth(const Medium& medium) {
 }  // namespace
 
 Medium make_medium(std::vector<Volume> volumes, int super_voxel) {
+  std::vector<Field*> fields;
+  for (Volume& volume : volumes) {
+    for (Field& field : volume.densities) fields.push_back(&field);
+  }
+  if (!fields.empty()) share_layout(fields);
   std::vector<Component> components;
   for (Volume& volume : volumes) add_components(std::move(volume), components);
   if (components.size() > Medium::kMaxComponents) {

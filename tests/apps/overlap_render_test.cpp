@@ -129,6 +129,24 @@ TEST_F(OverlapRenderTest, AVectorGridIsThreeGridsBitForBit) {
   }
 }
 
+// Grids that hold no more than their own part are given one layout of bricks.
+TEST_F(OverlapRenderTest, AVectorGridIsThreeSmallerGridsBitForBit) {
+  std::array<TestGrid, 3> whole = dyes();
+  std::array<TestGrid, 3> parts = whole;
+  for (int c = 0; c < 3; ++c) {
+    parts[c].voxels.clear();
+    for (auto& voxel : whole[c].voxels) {
+      if (voxel.place[c] < 0) voxel.value = 0;
+      if (voxel.value > 0) parts[c].voxels.push_back(voxel);
+    }
+  }
+  testing_volumes::write_vdb_file(path("parts.vdb"), {parts[0], parts[1], parts[2]});
+  testing_volumes::write_vdb_vectors(path("vectors.vdb"), whole);
+  const std::string options = " --albedo 0.9 --spp 4 --tracker spectral --look-at 3,2,4,0,0,0";
+  EXPECT_EQ(render("parts.vdb --grid red,green,blue" + options).values,
+            render("vectors.vdb --grid red" + options).values);
+}
+
 TEST_F(OverlapRenderTest, AnRgbDensityActsOnItsChannelsAlone) {
   // Only the red channel has density: green and blue light pass.
   std::array<TestGrid, 3> channels = dyes();

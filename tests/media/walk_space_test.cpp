@@ -304,11 +304,44 @@ TEST(WalkSpace, RefusesATransformWithoutInverse) {
   EXPECT_EQ(complaint({plain, flat}), "grid 'test': its transform has no inverse");
 }
 
+TEST(WalkSpace, ALayoutIsSharedWithoutAChangeOfTheVoxels) {
+  auto near = make_field(Vec3i(-7, 3, -20), Vec3i(21, 30, 9), hash_noise);
+  auto beside = make_field(Vec3i(10, -30, 4), Vec3i(40, 5, 12), sparse_noise);
+  const Field before[] = {*near, *beside};
+  Field* const fields[] = {near.get(), beside.get()};
+  EXPECT_FALSE(medium_of({near, beside}).aligned());
+  share_layout(fields);
+  EXPECT_TRUE(medium_of({near, beside}).aligned());
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(fields[k]->voxels.active_min(), before[k].voxels.active_min());
+    EXPECT_EQ(fields[k]->voxels.active_max(), before[k].voxels.active_max());
+    for (int x = -40; x < 60; ++x) {
+      for (int y = -40; y < 60; ++y) {
+        for (int z = -40; z < 60; ++z) {
+          const Vec3i voxel(x, y, z);
+          ASSERT_EQ(fields[k]->voxels.value(voxel), before[k].voxels.value(voxel)) << voxel;
+        }
+      }
+    }
+  }
+}
+
+TEST(WalkSpace, ALayoutIsNotSharedAcrossTransformsOrEmptySpace) {
+  const auto near = make_field(Vec3i(0), Vec3i(5), hash_noise);
+  const auto turned = make_field(Vec3i(0), Vec3i(5), hash_noise, Matrix4d().rotate(Vec3d(1)));
+  const auto far = make_field(Vec3i(300), Vec3i(305), hash_noise);
+  for (const auto& other : {turned, far}) {
+    Field* const fields[] = {near.get(), other.get()};
+    share_layout(fields);
+    EXPECT_FALSE(medium_of({near, other}).aligned());
+  }
+}
+
 // Fields far apart make large cells of themselves, and not more than can be held.
 TEST(WalkSpace, CellsGrowWhereComponentsLieFarApart) {
   const auto near = make_field(Vec3i(0), Vec3i(5), hash_noise);
   const auto far = make_field(Vec3i(0), Vec3i(5), hash_noise,
-                              Matrix4d().setTranslation(Vec3d(20000, 20000, 20000)));
+                              Matrix4d().setTranslation(Vec3d(12000, 12000, 12000)));
   const Medium medium = medium_of({near, far});
   EXPECT_GT(medium.super_voxels().cell_size, 64);
   EXPECT_LE(medium.super_voxels().cell_count(), std::size_t{4} << 20);
