@@ -39,6 +39,24 @@ int thread_count(const RenderReport& report) {
   return report.threads > 0 ? report.threads : tbb::info::default_concurrency();
 }
 
+/// "smoke.vdb, fire.vdb"
+std::string volume_names(const RenderReport& report) {
+  std::string names;
+  for (const VolumeReport& volume : report.volumes) {
+    if (!names.empty()) names += ", ";
+    names += std::filesystem::path(volume.file).filename().string();
+  }
+  return names;
+}
+
+nlohmann::json volumes_json(const RenderReport& report) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const VolumeReport& volume : report.volumes) {
+    list.push_back({{"file", volume.file}, {"grids", volume.grids}});
+  }
+  return list;
+}
+
 void add_metadata(Image& image, const RenderResult& result, const RenderReport& report) {
   const WalkSettings& walk = report.settings.walk;
   const WalkStatistics counts = result.statistics();
@@ -47,7 +65,7 @@ void add_metadata(Image& image, const RenderResult& result, const RenderReport& 
       {"Software", fmt::format("freepath {}", version())},
       {"DateTime", now_text()},
       {"freepath:version", std::string(version())},
-      {"freepath:volume", std::filesystem::path(report.volume).filename().string()},
+      {"freepath:volume", volume_names(report)},
       {"freepath:seed", integer(walk.seed)},
       {"freepath:samples", integer(result.samples)},
       {"freepath:most_samples", integer(result.most_samples)},
@@ -94,6 +112,7 @@ nlohmann::json statistics_json(const RenderResult& result, const RenderReport& r
                  {"build", report.seconds_build},
                  {"render", report.seconds_render}}},
                {"peak_memory_bytes", peak_memory_bytes()},
+               {"volumes", volumes_json(report)},
                {"tracker", report.settings.walk.tracker},
                {"transmittance", report.settings.walk.transmittance},
                {"seed", report.settings.walk.seed},
@@ -135,7 +154,7 @@ void write_outputs(const std::vector<std::string>& files, double exposure,
 }
 
 void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
-                           const std::string& volume) {
+                           const std::vector<std::string>& volumes) {
   namespace fs = std::filesystem;
   if (file.empty()) return;
   std::error_code error;
@@ -150,7 +169,7 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
     fail("--stats {}: exists and is not a file", file);
   }
   std::vector<std::string> others = pictures;
-  others.push_back(volume);
+  others.insert(others.end(), volumes.begin(), volumes.end());
   for (const std::string& other : others) {
     if (fs::weakly_canonical(other, error) == fs::weakly_canonical(file, error)) {
       fail("--stats {}: would overwrite {}; choose another name", file, other);
