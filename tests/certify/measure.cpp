@@ -302,7 +302,7 @@ class Measurement {
     const bool complete = 1 - inner < 1e-3;
     const double statistic =
         paths * (complete ? distance : distance + across * across / (1 - inner));
-    const double degrees = static_cast<double>(complete ? freedom - 1 : freedom);
+    const auto degrees = static_cast<double>(complete ? freedom - 1 : freedom);
     if (degrees > 0)
       check.z = std::max(check.z, z_of_p(upper_gamma(0.5 * degrees, 0.5 * statistic)));
     return check;

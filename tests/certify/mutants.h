@@ -30,7 +30,8 @@ struct Mutant {
   Options options(const PlantedFactors& planted) const;
 };
 
-/// How GoogleTest names one.
+/// How GoogleTest names one, by the name that it looks for.
+// NOLINTNEXTLINE(readability-identifier-naming)
 inline void PrintTo(const Mutant& mutant, std::ostream* out) { *out << mutant.name; }
 
 /// All of them.

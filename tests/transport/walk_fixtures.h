@@ -89,6 +89,7 @@ inline RayIntegrals integrate(const Medium& medium, const TestRay& ray, Interpol
                               int steps = 60000, int channel = 0) {
   const std::vector<Component>& components = medium.components();
   std::vector<Matrix4d> world_to_index;
+  world_to_index.reserve(components.size());
   for (const Component& component : components) {
     world_to_index.push_back(component.density->index_to_world.inverse());
   }
