@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,10 +31,10 @@ struct Options {
   bool json = false;
 };
 
-/// A grid and, where it can be loaded, what became of it.
+/// A grid and, where it can be loaded, what became of it: a field for each channel.
 struct Described {
   GridInfo info;
-  std::optional<LoadedField> loaded;
+  std::vector<LoadedField> loaded;
 };
 
 /// A transform in parts that say something to a reader.
@@ -117,16 +116,55 @@ std::string transform_text(const GridInfo& info) {
 struct SuperVoxelFacts {
   int cell_size;
   Vec3i counts;
-  SuperVoxelSummary summary;
+  std::size_t cells;
+  std::size_t occupied;                     ///< In any channel.
+  std::vector<SuperVoxelSummary> channels;  ///< Of each.
   std::size_t memory_bytes;
 };
 
-SuperVoxelFacts super_voxel_facts(const Field& field) {
-  const BrickMap* const maps[] = {&field.voxels};
-  const auto edge_length = std::cbrt(std::abs(field.index_to_world.determinant()));
-  const float extinction[] = {static_cast<float>(edge_length)};
+SuperVoxelFacts super_voxel_facts(const std::vector<LoadedField>& fields) {
+  std::vector<const BrickMap*> maps;
+  for (const LoadedField& loaded : fields) maps.push_back(&loaded.field.voxels);
+  const auto edge_length = std::cbrt(std::abs(fields[0].field.index_to_world.determinant()));
+  const std::vector<float> extinction(fields.size(), static_cast<float>(edge_length));
   const SuperVoxels cells = build_super_voxels(maps, extinction, 0);
-  return {cells.cell_size, cells.counts, summarize(cells), cells.memory_bytes()};
+  const auto empty = std::ranges::count_if(cells.empty_radius, [](int r) { return r > 0; });
+  SuperVoxelFacts facts{cells.cell_size,
+                        cells.counts,
+                        cells.cell_count(),
+                        cells.cell_count() - static_cast<std::size_t>(empty),
+                        {},
+                        cells.memory_bytes()};
+  for (int k = 0; k < cells.components; ++k) facts.channels.push_back(summarize(cells, k));
+  return facts;
+}
+
+/// "", or "R " of a grid of vectors.
+std::string channel_prefix(const GridInfo& info, std::size_t channel) {
+  return info.channels == 1 ? "" : fmt::format("{}: ", kChannelNames[channel]);
+}
+
+std::string ranges_text(const GridInfo& info) {
+  std::string text;
+  for (std::size_t i = 0; i < info.ranges.size(); ++i) {
+    text += fmt::format("{}{}{:.6g} to {:.6g}", i == 0 ? "" : ", ", channel_prefix(info, i),
+                        info.ranges[i].minimum, info.ranges[i].maximum);
+  }
+  return text;
+}
+
+struct Bricks {
+  std::size_t count = 0;
+  std::size_t bytes = 0;
+};
+
+Bricks bricks_of(const std::vector<LoadedField>& fields) {
+  Bricks sum;
+  for (const LoadedField& loaded : fields) {
+    sum.count += loaded.field.voxels.brick_count() - 1;
+    sum.bytes += loaded.field.voxels.memory_bytes();
+  }
+  return sum;
 }
 
 std::string grid_text(const Described& grid) {
@@ -148,25 +186,29 @@ std::string grid_text(const Described& grid) {
     row("voxel bounds", fmt::format("({}, {}, {}) to ({}, {}, {}), {} x {} x {}", info.active_min.x,
                                     info.active_min.y, info.active_min.z, info.active_max.x,
                                     info.active_max.y, info.active_max.z, size.x, size.y, size.z));
-    row("range", fmt::format("{:.6g} to {:.6g}", info.minimum, info.maximum));
+    row("range", ranges_text(info));
     row("active", fmt::format("{} voxels, {} constant tiles among them", info.active_voxels,
                               info.active_tiles));
   }
   row("in the file", size_text(static_cast<double>(info.stored_bytes)));
-  if (grid.loaded) {
-    const BrickMap& map = grid.loaded->field.voxels;
-    row("in memory",
-        fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
-                    size_text(static_cast<double>(map.memory_bytes())), map.brick_count() - 1));
-    const SuperVoxelFacts cells = super_voxel_facts(grid.loaded->field);
-    row("super-voxels", fmt::format("{} x {} x {} of {} voxels a side, {:.1f} % occupied, {}",
-                                    cells.counts.x, cells.counts.y, cells.counts.z, cells.cell_size,
-                                    100.0 * static_cast<double>(cells.summary.occupied) /
-                                        static_cast<double>(cells.summary.cells),
-                                    size_text(static_cast<double>(cells.memory_bytes))));
-    row("", fmt::format("of those occupied the mean maximum is {:.4g}, the mean minimum {:.4g}",
-                        cells.summary.mean_maximum, cells.summary.mean_minimum));
-    for (const std::string& warning : grid.loaded->warnings) row("warning", warning);
+  if (!grid.loaded.empty()) {
+    const Bricks bricks = bricks_of(grid.loaded);
+    row("in memory", fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
+                                 size_text(static_cast<double>(bricks.bytes)), bricks.count));
+    const SuperVoxelFacts cells = super_voxel_facts(grid.loaded);
+    row("super-voxels",
+        fmt::format("{} x {} x {} of {} voxels a side, {:.1f} % occupied, {}", cells.counts.x,
+                    cells.counts.y, cells.counts.z, cells.cell_size,
+                    100.0 * static_cast<double>(cells.occupied) / static_cast<double>(cells.cells),
+                    size_text(static_cast<double>(cells.memory_bytes))));
+    for (std::size_t i = 0; i < cells.channels.size(); ++i) {
+      row("", fmt::format("{}of those occupied the mean maximum is {:.4g}, the mean minimum {:.4g}",
+                          channel_prefix(info, i), cells.channels[i].mean_maximum,
+                          cells.channels[i].mean_minimum));
+    }
+    for (const LoadedField& loaded : grid.loaded) {
+      for (const std::string& warning : loaded.warnings) row("warning", warning);
+    }
   } else {
     row("not loadable", info.reason);
   }
@@ -200,19 +242,32 @@ nlohmann::json grid_json(const Described& grid) {
     json["minimum"] = info.minimum;
     json["maximum"] = info.maximum;
   }
-  if (grid.loaded) {
-    const BrickMap& map = grid.loaded->field.voxels;
-    json["memory_bytes"] = map.memory_bytes();
-    json["bricks"] = map.brick_count() - 1;
-    const SuperVoxelFacts cells = super_voxel_facts(grid.loaded->field);
-    json["super_voxels"] = {{"edge_voxels", cells.cell_size},
-                            {"counts", to_json(cells.counts)},
-                            {"cells", cells.summary.cells},
-                            {"occupied", cells.summary.occupied},
-                            {"mean_maximum", cells.summary.mean_maximum},
-                            {"mean_minimum", cells.summary.mean_minimum},
-                            {"memory_bytes", cells.memory_bytes}};
-    json["warnings"] = grid.loaded->warnings;
+  if (info.channels > 1) {
+    for (std::size_t i = 0; i < info.ranges.size(); ++i) {
+      json["channels"].push_back({{"name", std::string(1, kChannelNames[i])},
+                                  {"minimum", info.ranges[i].minimum},
+                                  {"maximum", info.ranges[i].maximum}});
+    }
+  }
+  if (grid.loaded.empty()) return json;
+  const Bricks bricks = bricks_of(grid.loaded);
+  json["memory_bytes"] = bricks.bytes;
+  json["bricks"] = bricks.count;
+  const SuperVoxelFacts cells = super_voxel_facts(grid.loaded);
+  nlohmann::json& super_voxels = json["super_voxels"];
+  super_voxels = {{"edge_voxels", cells.cell_size},
+                  {"counts", to_json(cells.counts)},
+                  {"cells", cells.cells},
+                  {"occupied", cells.occupied},
+                  {"memory_bytes", cells.memory_bytes}};
+  for (std::size_t i = 0; i < cells.channels.size(); ++i) {
+    nlohmann::json& target = info.channels == 1 ? super_voxels : json["channels"][i];
+    target["mean_maximum"] = cells.channels[i].mean_maximum;
+    target["mean_minimum"] = cells.channels[i].mean_minimum;
+  }
+  json["warnings"] = nlohmann::json::array();
+  for (const LoadedField& loaded : grid.loaded) {
+    for (const std::string& warning : loaded.warnings) json["warnings"].push_back(warning);
   }
   return json;
 }
@@ -226,11 +281,11 @@ void for_each_grid(const Options& options, Use use) {
     grids = {chosen};
   }
   for (const GridInfo& info : grids) {
-    Described described{info, std::nullopt};
+    Described described{info, {}};
     if (info.loadable) {
       LoadOptions load;
       load.selection.index = info.index;
-      described.loaded = load_field(options.file, load);
+      described.loaded = load_fields(options.file, load);
     }
     use(described);
   }

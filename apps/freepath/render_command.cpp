@@ -11,6 +11,7 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/render_output.h"
+#include "apps/freepath/render_volumes.h"
 #include "freepath/base/error.h"
 #include "freepath/scene/volume_scene.h"
 #include "freepath/transport/auto_tracker.h"
@@ -19,13 +20,18 @@ namespace freepath::program {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Renders the density of a volume file (.vdb, .nvdb), without bias and without a limit to the
+    R"(Renders the densities of volume files (.vdb, .nvdb), without bias and without a limit to the
 number of scatterings. Several -o write the same picture several times; an .exr holds all channels,
 a .png the colour. Ctrl-C drops the paths under way, writes what there is, says how many samples
 that are, and exits with status 0; a second Ctrl-C ends at once. Where Ctrl-C or the end of --time
 come before every pixel has its first sample, that is waited for only if it will not take long
 (a second after Ctrl-C; as much time again and a second after --time): pixels without a sample are
 black with alpha 0, and counted in a warning, in --stats and in the .exr.
+
+Several volumes overlap as parts of one medium, each where its file puts it. Options of the medium
+are given once for all volumes, or once for each in the order of the files. Three grids, or a grid
+of vectors, are the densities of R, G and B. All trackers walk through such media but closed-form,
+which needs one homogeneous density.
 
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
 Methods take options after their name: weighted-delta:rate-scale=0.7
@@ -36,7 +42,9 @@ Examples:
   freepath render smoke.vdb -o smoke.exr --environment sky.hdr --sun none --time 60
   freepath render haze.nvdb -o haze.exr --sigma-s 4,1,0.25 --sigma-a 0.02,0.2,1 --sun 20,120
   freepath render cloud.vdb -o furnace.exr --albedo 1 --environment 1 --stats stats.json
-  freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio)";
+  freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio
+  freepath render smoke.vdb fire.vdb -o both.exr --albedo 0.6 --albedo 0.2 --le 0 --le 9,3,0.5
+  freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral)";
 
 constexpr std::array kInterpolations{
     Choice<Interpolation>{"nearest", Interpolation::kNearest},
@@ -45,12 +53,11 @@ constexpr std::array kInterpolations{
 constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
                                   Choice<Absorption>{"weighted", Absorption::kWeighted}};
 constexpr std::array kUpAxes{Choice<UpAxis>{"y", UpAxis::kY}, Choice<UpAxis>{"z", UpAxis::kZ}};
-constexpr std::array kNegatives{Choice<NegativePolicy>{"error", NegativePolicy::kError},
-                                Choice<NegativePolicy>{"clamp", NegativePolicy::kClamp}};
 
 /// The options as they were typed; read_* turn them into what the library takes.
 struct Options {
-  std::string volume, grid, stats;
+  VolumeOptions volumes;
+  std::string stats;
   std::vector<std::string> outputs;
   uint32_t samples = 0;
   double time_limit = 0;
@@ -59,9 +66,6 @@ struct Options {
   int threads = 0;
   std::size_t batch = RenderSettings{}.batch;
   uint32_t max_scatterings = 0;
-  double density_scale = 1;
-  std::string albedo, sigma_a, sigma_s, radiance;
-  double g = 0;
   std::string environment, sun;
   double turbidity = SunParameters{}.turbidity;
   std::string tracker = "delta", transmittance = "ratio", interpolation = "stochastic";
@@ -72,26 +76,15 @@ struct Options {
   std::string up = "y", look_at;
   double fov = CameraOptions{}.fov;
   double exposure = 0;
-  std::string negative = "error";
 };
 
-OpticalProperties read_optics(const Options& options) {
-  OpticalProperties optics;
-  optics.density_scale = static_cast<float>(options.density_scale);
-  optics.g = static_cast<float>(options.g);
-  if (!options.albedo.empty()) {
-    if (!options.sigma_a.empty() || !options.sigma_s.empty()) {
-      fail("--albedo and --sigma-a or --sigma-s say the same thing twice; give one or the other");
-    }
-    optics.albedo = parse_spectrum(options.albedo, "--albedo");
-  }
-  if (!options.sigma_a.empty()) optics.sigma_a = parse_spectrum(options.sigma_a, "--sigma-a");
-  if (!options.sigma_s.empty()) optics.sigma_s = parse_spectrum(options.sigma_s, "--sigma-s");
-  if (!options.radiance.empty()) optics.emission = parse_spectrum(options.radiance, "--le");
+/// What to load, where a number given to --emission counts as one given to --le.
+std::vector<VolumePlan> read_volumes(const Options& options) {
+  VolumeOptions volumes = options.volumes;
   for (const std::string& value : options.emission) {
-    if (looks_numeric(value)) optics.emission = parse_spectrum(value, "--emission");
+    if (looks_numeric(value)) volumes.radiance.push_back(value);
   }
-  return optics;
+  return plan_volumes(volumes);
 }
 
 LightOptions read_lights(const Options& options) {
@@ -209,9 +202,9 @@ std::string settle_tracker(const std::string& tracker, const Medium& medium) {
 void run(const Options& options) {
   // All that can be wrong with the options is said before the first second of work.
   for (const std::string& output : options.outputs) check_writable(output);
-  check_statistics_file(options.stats, options.outputs, options.volume);
+  check_statistics_file(options.stats, options.outputs, options.volumes.files);
   RenderSettings settings = read_settings(options);
-  const OpticalProperties optics = read_optics(options);
+  const std::vector<VolumePlan> plans = read_volumes(options);
   const LightOptions light_options = read_lights(options);
   const CameraOptions camera_options = read_camera(options);
   const UpAxis up = parse_choice(options.up, "--up", kUpAxes);
@@ -219,16 +212,10 @@ void run(const Options& options) {
 
   RenderReport report;
   Stopwatch watch;
-  LoadOptions load;
-  if (!options.grid.empty()) load.selection = parse_grid_selection(options.grid);
-  load.negative = parse_choice(options.negative, "--negative", kNegatives);
-  LoadedField loaded = load_field(options.volume, load);
-  for (const std::string& warning : loaded.warnings) {
-    fmt::print(stderr, "freepath: warning: {}\n", warning);
-  }
+  std::vector<Volume> volumes = load_volumes(plans, report.volumes);
   report.seconds_load = watch.lap();
-  const Medium medium = make_medium(std::move(loaded.field), optics, options.super_voxel);
-  const Camera camera = make_camera(*medium.components()[0].density, camera_options, up);
+  const Medium medium = make_medium(std::move(volumes), options.super_voxel);
+  const Camera camera = make_camera(medium, camera_options, up);
   settings.walk.tracker = settle_tracker(settings.walk.tracker, medium);
   report.seconds_build = watch.lap();
 
@@ -244,7 +231,6 @@ void run(const Options& options) {
   report.seconds_render = result.seconds;
   report.settings = settings;
   report.threads = settings.threads;
-  report.volume = options.volume;
   write_outputs(options.outputs, options.exposure, result, report);
   if (!options.stats.empty()) write_statistics(options.stats, result, report);
   print_summary(options.outputs, result, report);
@@ -285,31 +271,6 @@ void add_picture_options(CLI::App& command, Options& o) {
   command.add_option("--up", o.up, "Axis that points up: y or z")
       ->capture_default_str()
       ->group("Picture");
-}
-
-void add_medium_options(CLI::App& command, Options& o) {
-  command.add_option("--grid", o.grid, "Grid to render, by name or number [density]")
-      ->group("Medium");
-  command.add_option("--negative", o.negative, "Negative densities: error or clamp")
-      ->capture_default_str()
-      ->group("Medium");
-  command.add_option("--density-scale", o.density_scale, "Multiplies the densities")
-      ->capture_default_str()
-      ->check(kFiniteNumber)
-      ->group("Medium");
-  command.add_option("--albedo", o.albedo, "Single-scattering albedo, V or R,G,B [0.99]")
-      ->group("Medium");
-  command.add_option("--sigma-a", o.sigma_a, "Absorption per unit of density, V or R,G,B [1/unit]")
-      ->group("Medium");
-  command.add_option("--sigma-s", o.sigma_s, "Scattering per unit of density, V or R,G,B [1/unit]")
-      ->group("Medium");
-  command.add_option("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function")
-      ->capture_default_str()
-      ->check(kFiniteNumber)
-      ->group("Medium");
-  command
-      .add_option("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e")
-      ->group("Medium");
 }
 
 void add_light_options(CLI::App& command, Options& o) {
@@ -382,12 +343,15 @@ void add_run_options(CLI::App& command, Options& o) {
 }  // namespace
 
 void add_render_command(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render a volume file to pictures");
+  CLI::App* command = program.add_subcommand("render", "Render volume files to pictures");
   command->footer(kFooter);
   const auto options = std::make_shared<Options>();
-  command->add_option("volume", options->volume, "Volume file, .vdb or .nvdb")->required();
+  command
+      ->add_option("volume", options->volumes.files,
+                   "Volume files, .vdb or .nvdb; several overlap, each where its file puts it")
+      ->required();
   add_picture_options(*command, *options);
-  add_medium_options(*command, *options);
+  add_volume_options(*command, options->volumes);
   add_light_options(*command, *options);
   add_method_options(*command, *options);
   add_run_options(*command, *options);

@@ -39,15 +39,33 @@ int thread_count(const RenderReport& report) {
   return report.threads > 0 ? report.threads : tbb::info::default_concurrency();
 }
 
+/// "smoke.vdb, fire.vdb"
+std::string volume_names(const RenderReport& report) {
+  std::string names;
+  for (const VolumeReport& volume : report.volumes) {
+    if (!names.empty()) names += ", ";
+    names += std::filesystem::path(volume.file).filename().string();
+  }
+  return names;
+}
+
+nlohmann::json volumes_json(const RenderReport& report) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const VolumeReport& volume : report.volumes) {
+    list.push_back({{"file", volume.file}, {"grids", volume.grids}});
+  }
+  return list;
+}
+
 void add_metadata(Image& image, const RenderResult& result, const RenderReport& report) {
   const WalkSettings& walk = report.settings.walk;
-  const WalkStatistics& counts = result.statistics;
+  const WalkStatistics counts = result.statistics();
   const auto integer = [](uint64_t value) { return static_cast<int64_t>(value); };
   image.metadata = {
       {"Software", fmt::format("freepath {}", version())},
       {"DateTime", now_text()},
       {"freepath:version", std::string(version())},
-      {"freepath:volume", std::filesystem::path(report.volume).filename().string()},
+      {"freepath:volume", volume_names(report)},
       {"freepath:seed", integer(walk.seed)},
       {"freepath:samples", integer(result.samples)},
       {"freepath:most_samples", integer(result.most_samples)},
@@ -67,12 +85,8 @@ void add_metadata(Image& image, const RenderResult& result, const RenderReport& 
   };
 }
 
-nlohmann::json statistics_json(const RenderResult& result, const RenderReport& report) {
-  const WalkStatistics& counts = result.statistics;
-  return {{"paths", result.paths},
-          {"samples", result.samples},
-          {"most_samples", result.most_samples},
-          {"pixels_without_samples", result.pixels_without_samples},
+nlohmann::json counts_json(const WalkStatistics& counts) {
+  return {{"rays", counts.rays},
           {"tentative_collisions", counts.tentative_collisions},
           {"null_collisions", counts.null_collisions},
           {"real_collisions", counts.real_collisions},
@@ -81,19 +95,47 @@ nlohmann::json statistics_json(const RenderResult& result, const RenderReport& r
           {"super_voxel_steps", counts.super_voxel_steps},
           {"bound_violations", counts.bound_violations},
           {"negative_weights", counts.negative_weights},
-          {"largest_weight", counts.largest_weight},
-          {"overflows", result.overflows},
-          {"seconds",
-           {{"load", report.seconds_load},
-            {"build", report.seconds_build},
-            {"render", report.seconds_render}}},
-          {"peak_memory_bytes", peak_memory_bytes()},
-          {"tracker", report.settings.walk.tracker},
-          {"transmittance", report.settings.walk.transmittance},
-          {"seed", report.settings.walk.seed},
-          {"threads", thread_count(report)},
-          {"simd", to_string(report.settings.walk.simd)},
-          {"version", version()}};
+          {"largest_weight", counts.largest_weight}};
+}
+
+nlohmann::json statistics_json(const RenderResult& result, const RenderReport& report) {
+  nlohmann::json json = counts_json(result.statistics());
+  json.update({{"paths", result.paths},
+               {"free_paths", counts_json(result.free_paths)},
+               {"shadow_rays", counts_json(result.shadow_rays)},
+               {"samples", result.samples},
+               {"most_samples", result.most_samples},
+               {"pixels_without_samples", result.pixels_without_samples},
+               {"overflows", result.overflows},
+               {"seconds",
+                {{"load", report.seconds_load},
+                 {"build", report.seconds_build},
+                 {"render", report.seconds_render}}},
+               {"peak_memory_bytes", peak_memory_bytes()},
+               {"volumes", volumes_json(report)},
+               {"tracker", report.settings.walk.tracker},
+               {"transmittance", report.settings.walk.transmittance},
+               {"seed", report.settings.walk.seed},
+               {"threads", thread_count(report)},
+               {"simd", to_string(report.settings.walk.simd)},
+               {"version", version()}});
+  return json;
+}
+
+/// One line on what a method did.
+void print_counts(const std::string& method, const char* unit, const WalkStatistics& counts) {
+  if (counts.rays == 0) return;
+  const auto each = [&](uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(counts.rays);
+  };
+  fmt::print(stderr,
+             "{}: {} {}s, each {:.2f} lookups, {:.2f} real, {:.2f} null and {:.2f} control "
+             "collisions, {:.2f} super-voxel steps; largest weight {:.4g}, {} negative weights, {} "
+             "bound violations\n",
+             method, counts.rays, unit, each(counts.lookups), each(counts.real_collisions),
+             each(counts.null_collisions), each(counts.control_collisions),
+             each(counts.super_voxel_steps), counts.largest_weight, counts.negative_weights,
+             counts.bound_violations);
 }
 
 }  // namespace
@@ -112,7 +154,7 @@ void write_outputs(const std::vector<std::string>& files, double exposure,
 }
 
 void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
-                           const std::string& volume) {
+                           const std::vector<std::string>& volumes) {
   namespace fs = std::filesystem;
   if (file.empty()) return;
   std::error_code error;
@@ -127,7 +169,7 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
     fail("--stats {}: exists and is not a file", file);
   }
   std::vector<std::string> others = pictures;
-  others.push_back(volume);
+  others.insert(others.end(), volumes.begin(), volumes.end());
   for (const std::string& other : others) {
     if (fs::weakly_canonical(other, error) == fs::weakly_canonical(file, error)) {
       fail("--stats {}: would overwrite {}; choose another name", file, other);
@@ -158,8 +200,6 @@ void write_statistics(const std::string& file, const RenderResult& result,
 
 void print_summary(const std::vector<std::string>& files, const RenderResult& result,
                    const RenderReport& report) {
-  const WalkStatistics& counts = result.statistics;
-  const double paths = static_cast<double>(std::max<uint64_t>(result.paths, 1));
   std::string samples = fmt::format("{}", result.samples);
   if (result.most_samples > result.samples) samples += fmt::format(" to {}", result.most_samples);
   if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", samples);
@@ -167,15 +207,11 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
       stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
       samples, clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
       report.seconds_load, report.seconds_build, report.seconds_render);
-  fmt::print(stderr,
-             "{}: {} paths, a path {:.2f} lookups, {:.2f} real and {:.2f} null collisions, {:.2f} "
-             "super-voxel steps; largest weight {:.4g}, {} negative weights, {} bound violations\n",
-             report.settings.walk.tracker, result.paths,
-             static_cast<double>(counts.lookups) / paths,
-             static_cast<double>(counts.real_collisions) / paths,
-             static_cast<double>(counts.null_collisions) / paths,
-             static_cast<double>(counts.super_voxel_steps) / paths, counts.largest_weight,
-             counts.negative_weights, counts.bound_violations);
+  fmt::print(stderr, "{} paths, {:.2f} lookups each\n", result.paths,
+             static_cast<double>(result.statistics().lookups) /
+                 static_cast<double>(std::max<uint64_t>(result.paths, 1)));
+  print_counts(report.settings.walk.tracker, "flight", result.free_paths);
+  print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
   if (result.overflows > 0) {
     fmt::print(stderr,
                "freepath: warning: the weights of {} paths left the range of float and count as 0; "

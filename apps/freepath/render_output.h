@@ -23,10 +23,16 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// A volume of the picture.
+struct VolumeReport {
+  std::string file;
+  std::vector<std::string> grids;  ///< One, or those of R, G and B.
+};
+
 /// What there is to tell besides the result.
 struct RenderReport {
   double seconds_load = 0, seconds_build = 0, seconds_render = 0;
-  std::string volume;
+  std::vector<VolumeReport> volumes;
   RenderSettings settings;
   int threads = 0;  ///< 0: all
 };
@@ -37,11 +43,11 @@ void write_outputs(const std::vector<std::string>& files, double exposure,
                    const RenderResult& result, const RenderReport& report);
 
 /// Checks, before the time is spent, that statistics could be written, and over neither a picture
-/// nor the volume.
+/// nor a volume.
 /// @param file may be empty: no statistics
 /// @throws Error that names the file and what to do
 void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
-                           const std::string& volume);
+                           const std::vector<std::string>& volumes);
 
 /// Writes the statistics as one JSON object, aside and then renamed.
 /// @throws Error that names the file

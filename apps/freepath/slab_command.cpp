@@ -48,6 +48,7 @@ struct Options {
   int threads = 0;
   std::size_t batch = SlabSettings{}.batch;
   int super_voxel = 0;
+  double bound_scale = 1;
   bool json = false;
 };
 
@@ -113,6 +114,7 @@ SlabSettings read_settings(const Options& options) {
   settings.threads = options.threads;
   settings.batch = options.batch;
   settings.super_voxel = options.super_voxel;
+  settings.bound_scale = static_cast<float>(options.bound_scale);
   settings.walk.tracker = options.tracker;
   settings.walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
   settings.walk.simd = parse_simd(options.simd);
@@ -207,6 +209,11 @@ void add_method_options(CLI::App& command, Options& o) {
       .add_option("--super-voxel", o.super_voxel,
                   "Edge of a super-voxel [voxels]: 4, 8, 16, 32, 64, or 0 for automatic")
       ->capture_default_str();
+  command
+      .add_option("--bound-scale", o.bound_scale,
+                  "Looser bounds: under tight ones, 1, every collision in a layer is real")
+      ->capture_default_str()
+      ->check(kFiniteNumber);
   command.add_option("--simd", o.simd, "best, avx512, avx2, sse4 or one-lane")
       ->capture_default_str();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "freepath/base/error.h"
 #include "freepath/io/volume_formats.h"
@@ -43,9 +44,16 @@ std::vector<GridInfo> list_grids(const std::filesystem::path& path) {
 }
 
 LoadedField load_field(const std::filesystem::path& path, const LoadOptions& options) {
+  LoadOptions scalar = options;
+  scalar.scalar_only = true;
+  return std::move(load_fields(path, scalar).front());
+}
+
+std::vector<LoadedField> load_fields(const std::filesystem::path& path,
+                                     const LoadOptions& options) {
   return read_volume(
-      path, [&](const io::VolumeFile& file) { return io::load_vdb_field(file, options); },
-      [&](const io::VolumeFile& file) { return io::load_nvdb_field(file, options); });
+      path, [&](const io::VolumeFile& file) { return io::load_vdb_fields(file, options); },
+      [&](const io::VolumeFile& file) { return io::load_nvdb_fields(file, options); });
 }
 
 }  // namespace freepath

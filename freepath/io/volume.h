@@ -1,6 +1,6 @@
 #pragma once
-/// @file Reading scalar fields from volume files: OpenVDB (.vdb) and NanoVDB (.nvdb). What a file
-/// is is told by its first bytes, not by its name.
+/// @file Reading densities from volume files: OpenVDB (.vdb) and NanoVDB (.nvdb). What a file is is
+/// told by its first bytes, not by its name.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +15,14 @@
 
 namespace freepath {
 
+/// What the channels of a grid of vectors are taken for.
+inline constexpr char kChannelNames[] = {'R', 'G', 'B'};
+
+/// Least and largest active value of a channel; 0 where there are none.
+struct GridRange {
+  float minimum = 0, maximum = 0;
+};
+
 /// One grid of a volume file.
 struct GridInfo {
   std::string name;        ///< With a suffix where several share it: "density", "density[1]".
@@ -27,20 +35,23 @@ struct GridInfo {
   uint64_t active_tiles = 0;            ///< Constant cubes of 8, 128 or 4096 voxels a side.
   uint64_t stored_bytes = 0;            ///< Bytes of the grid in the file.
   float minimum = 0, maximum = 0;       ///< Of the active values, 0 where there are none.
-  bool loadable = false;                ///< Whether load_field takes it.
+  int channels = 1;                     ///< Densities in a voxel: 3 in a grid of vectors, R, G, B.
+  std::vector<GridRange> ranges;        ///< Of each channel, once it has been read.
+  bool loadable = false;                ///< Whether load_fields takes it.
   std::string reason;                   ///< Why not.
 };
 
-/// All grids of a file, in its order. Reads every scalar grid through, for bounds and range; a grid
-/// that can't be read is listed with the reason.
+/// All grids of a file, in its order. Reads every grid of reals or vectors through, for bounds and
+/// range; a grid that can't be read is listed with the reason.
 /// @throws Error if the file can't be read or is no volume
 std::vector<GridInfo> list_grids(const std::filesystem::path& path);
 
 /// What to do about a negative density: refuse the grid, or put 0 in its place and say so.
 enum class NegativePolicy { kError, kClamp };
 
-/// Which grid of a file. With neither: the one named "density", else the only scalar one. Where
-/// several have the same name, the name alone is the first, "name[1]" the second, and so on.
+/// Which grid of a file. With neither: the one named "density", else the only scalar one (vectors
+/// of another name are more often velocities than densities). Where several have the same name, the
+/// name alone is the first, "name[1]" the second, and so on.
 struct GridSelection {
   std::optional<std::string> name;
   std::optional<int> index;
@@ -59,6 +70,7 @@ const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<G
 struct LoadOptions {
   GridSelection selection;
   NegativePolicy negative = NegativePolicy::kError;
+  bool scalar_only = false;  ///< Refuse grids of vectors.
 };
 
 /// A field with what there is to say about it.
@@ -78,5 +90,11 @@ struct LoadedField {
 ///   is not affine and invertible; or a value is NaN, infinite, out of the range of float, or
 ///   negative (see NegativePolicy)
 LoadedField load_field(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The same for a grid of any number of channels: one field, or three of one transform and layout
+/// for the densities of R, G and B that a grid of vectors holds.
+/// @throws Error as load_field; about a value it names the channel too
+std::vector<LoadedField> load_fields(const std::filesystem::path& path,
+                                     const LoadOptions& options = {});
 
 }  // namespace freepath

@@ -214,10 +214,39 @@ void FieldAssembly::describe(const ValueScan& leaves, GridInfo& info) const {
   if (scan.active_voxels > 0) {
     info.active_min = scan.active_min;
     info.active_max = scan.active_max;
-    info.minimum = scan.minimum;
-    info.maximum = scan.maximum;
+    info.minimum = info.ranges.empty() ? scan.minimum : std::min(info.minimum, scan.minimum);
+    info.maximum = info.ranges.empty() ? scan.maximum : std::max(info.maximum, scan.maximum);
+    info.ranges.push_back({scan.minimum, scan.maximum});
   }
   with_tiles(leaves);
+}
+
+GridAssembly::GridAssembly(const std::string& file, const std::string& grid,
+                           const LoadOptions& options, GridLayout layout, bool keep_values) {
+  std::vector<VolumeLayout> layouts = std::move(layout).take();
+  channels_.reserve(layouts.size());
+  for (std::size_t channel = 0; channel < layouts.size(); ++channel) {
+    std::string where = grid_place(file, grid);
+    if (layouts.size() > 1) where += fmt::format(", channel {}", kChannelNames[channel]);
+    channels_.emplace_back(where, options, std::move(layouts[channel]), keep_values);
+  }
+}
+
+std::vector<LoadedField> GridAssembly::finish(const GridInfo& info, const GridScan& scan) && {
+  std::vector<LoadedField> fields;
+  for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+    std::string name = info.name;
+    if (channels_.size() > 1) name += fmt::format(".{}", kChannelNames[channel]);
+    fields.push_back(std::move(channels_[channel])
+                         .finish(std::move(name), info.index_to_world, scan.channels[channel]));
+  }
+  return fields;
+}
+
+void GridAssembly::describe(const GridScan& scan, GridInfo& info) const {
+  for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+    channels_[channel].describe(scan.channels[channel], info);
+  }
 }
 
 }  // namespace freepath::io

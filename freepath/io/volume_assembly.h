@@ -2,9 +2,11 @@
 /// @file What the readers of all volume formats share: checking values and putting the leaves and
 /// tiles of a sparse tree into a brick map.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +30,54 @@ struct VolumeLayout {
   std::vector<Vec3i> leaves;  ///< First voxel of every 8³ leaf [index].
   std::vector<VolumeTile> tiles;
   double background = 0;
+};
+
+/// The densities in a value of a voxel: a real is one, a vector three.
+template <class T>
+struct ValueChannels {
+  static constexpr int kCount = 1;
+  using Real = T;
+  static T get(const T& value, int /*channel*/) { return value; }
+};
+template <class T>
+requires requires(const T& vector) { vector[2]; }
+struct ValueChannels<T> {
+  static constexpr int kCount = 3;
+  using Real = typename T::ValueType;
+  static Real get(const T& value, int channel) { return value[channel]; }
+};
+
+inline constexpr int kMaxGridChannels = 3;
+
+/// A layout for each channel of a grid, alike but for the values in them.
+class GridLayout {
+ public:
+  explicit GridLayout(int channels) : channels_(static_cast<std::size_t>(channels)) {}
+
+  void add_leaf(const Vec3i& origin) {
+    for (VolumeLayout& layout : channels_) layout.leaves.push_back(origin);
+  }
+  template <class T>
+  void add_tile(const Vec3i& origin, int size, const T& value) {
+    for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+      channels_[channel].tiles.push_back({origin, size, real(value, channel)});
+    }
+  }
+  template <class T>
+  void set_background(const T& value) {
+    for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+      channels_[channel].background = real(value, channel);
+    }
+  }
+  std::vector<VolumeLayout> take() && { return std::move(channels_); }
+
+ private:
+  template <class T>
+  static double real(const T& value, std::size_t channel) {
+    return static_cast<double>(ValueChannels<T>::get(value, static_cast<int>(channel)));
+  }
+
+  std::vector<VolumeLayout> channels_;
 };
 
 /// What was found among active values. Merging doesn't depend on the order.
@@ -64,7 +114,16 @@ struct ValueCheck {
             float* bricks, ValueScan& scan) const;
 };
 
-/// Collects the leaves and tiles of one grid. Leaves may come from several threads in any order.
+/// What was found in each channel of a grid.
+struct GridScan {
+  std::array<ValueScan, kMaxGridChannels> channels;
+
+  void merge(const GridScan& other) {
+    for (std::size_t i = 0; i < channels.size(); ++i) channels[i].merge(other.channels[i]);
+  }
+};
+
+/// Collects the leaves and tiles of one channel. Leaves may come from several threads in any order.
 class FieldAssembly {
  public:
   /// @param where file and grid, the beginning of every message
@@ -86,7 +145,7 @@ class FieldAssembly {
   /// @throws Error for a bad value or a grid without active voxels
   LoadedField finish(std::string name, const Matrix4d& index_to_world, const ValueScan& scan) &&;
 
-  /// The same numbers for a list of grids.
+  /// The same numbers for a list of grids; its range grows by this channel's.
   void describe(const ValueScan& scan, GridInfo& info) const;
 
  private:
@@ -100,11 +159,51 @@ class FieldAssembly {
   ValueScan tile_scan_;
 };
 
+/// The channels of one grid.
+class GridAssembly {
+ public:
+  /// @param keep_values false to look at the values only, for GridInfo
+  GridAssembly(const std::string& file, const std::string& grid, const LoadOptions& options,
+               GridLayout layout, bool keep_values);
+
+  std::size_t leaf_count() const { return channels_[0].layout().leaves.size(); }
+
+  /// Takes leaf number `leaf` of the layout.
+  /// @param values 512 values, offset 64x + 8y + z
+  /// @param mask 512 bits, active ones set
+  template <class T>
+  void take_leaf(std::size_t leaf, const T* values, const uint64_t* mask, GridScan& scan) const {
+    using Channels = ValueChannels<T>;
+    if constexpr (Channels::kCount == 1) {
+      channels_[0].take_leaf(leaf, values, mask, scan.channels[0]);
+    } else {
+      std::array<typename Channels::Real, kLeafVoxels> reals;
+      for (int channel = 0; channel < Channels::kCount; ++channel) {
+        for (int i = 0; i < kLeafVoxels; ++i) reals[i] = Channels::get(values[i], channel);
+        channels_[channel].take_leaf(leaf, reals.data(), mask, scan.channels[channel]);
+      }
+    }
+  }
+
+  /// A field for each channel, once all leaves were taken.
+  /// @throws Error for a bad value or a grid without active voxels
+  std::vector<LoadedField> finish(const GridInfo& info, const GridScan& scan) &&;
+
+  /// The same numbers for a list of grids.
+  void describe(const GridScan& scan, GridInfo& info) const;
+
+ private:
+  std::vector<FieldAssembly> channels_;
+};
+
 /// Gives grids of the same name the suffixes "[1]", "[2]", ... behind the first.
 void make_names_unique(std::vector<GridInfo>& grids);
 
 /// Marks a grid as not loadable for an error that reading it gave, unless a reason is known.
 void set_failure(const std::string& file, std::string_view message, GridInfo& grid);
+
+/// Fails if the options' grid can't be loaded.
+void check_selected(const std::string& file, const GridInfo& info, const LoadOptions& options);
 
 /// The start of messages about a grid.
 std::string grid_place(const std::string& file, const std::string& grid);

@@ -9,9 +9,9 @@
 namespace freepath::io {
 
 std::vector<GridInfo> list_vdb_grids(const VolumeFile& file);
-LoadedField load_vdb_field(const VolumeFile& file, const LoadOptions& options);
+std::vector<LoadedField> load_vdb_fields(const VolumeFile& file, const LoadOptions& options);
 
 std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file);
-LoadedField load_nvdb_field(const VolumeFile& file, const LoadOptions& options);
+std::vector<LoadedField> load_nvdb_fields(const VolumeFile& file, const LoadOptions& options);
 
 }  // namespace freepath::io

@@ -53,9 +53,11 @@ const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<G
   if (selection.name) {
     fail("{}: there is no grid named \"{}\"; it holds {}", file.string(), wanted, listed(grids));
   }
-  const auto loadable = std::ranges::count(grids, true, &GridInfo::loadable);
-  if (loadable == 1) return *std::ranges::find(grids, true, &GridInfo::loadable);
-  if (grids.size() == 1) return grids[0];  // its own reason says more than a choice of one
+  const auto is_default = [](const GridInfo& grid) { return grid.loadable && grid.channels == 1; };
+  const auto loadable = std::ranges::count_if(grids, is_default);
+  if (loadable == 1) return *std::ranges::find_if(grids, is_default);
+  // Its own reason says more than a choice of one.
+  if (grids.size() == 1 && grids[0].channels == 1) return grids[0];
   fail("{}: no grid is named \"density\" and {} could be one; choose (--grid) among {}",
        file.string(), loadable == 0 ? "none" : "several", listed(grids));
 }
@@ -119,9 +121,18 @@ std::string reason_against_type(const std::string& type) {
     return "it holds points, not densities; rasterise them first (VDB from Particles in Houdini)";
   }
   return fmt::format(
-      "its voxels are of type {}; only float, half, double and the quantised floats "
-      "of NanoVDB can be densities",
+      "its voxels are of type {}; only float, half, double, the quantised floats of NanoVDB and "
+      "vectors of three reals can be densities",
       type);
+}
+
+void check_selected(const std::string& file, const GridInfo& info, const LoadOptions& options) {
+  const std::string place = grid_place(file, info.name);
+  if (!info.loadable) fail("{}: {}", place, info.reason);
+  if (options.scalar_only && info.channels != 1) {
+    fail("{}: its voxels are of type {}, which are {} densities; choose a grid of one", place,
+         info.type, info.channels);
+  }
 }
 
 }  // namespace io

@@ -35,7 +35,7 @@ class TreeWalk {
 
   TreeWalk(const VolumeFile& file, NvdbBytes& bytes) : file_(&file), bytes_(&bytes) {}
 
-  VolumeLayout layout;
+  GridLayout layout{ValueChannels<decltype(Root::mBackground)>::kCount};
   std::vector<NodePlace> leaves;  ///< In the order of the file, as in the layout.
 
   void read(uint64_t root_offset) {
@@ -46,8 +46,7 @@ class TreeWalk {
     sort_level(lower, sizeof(Lower));
     for (const NodePlace& place : lower) read_node<Lower, 16, 8>(place, leaves);
     sort_level(leaves, 1);
-    layout.leaves.reserve(leaves.size());
-    for (const NodePlace& leaf : leaves) layout.leaves.push_back(leaf.origin);
+    for (const NodePlace& leaf : leaves) layout.add_leaf(leaf.origin);
   }
 
  private:
@@ -55,7 +54,7 @@ class TreeWalk {
     check_alignment(offset);
     bytes_->read(offset, buffer_.resize(sizeof(Root)));
     const uint32_t count = buffer_.node<Root>(0).mTableSize;
-    layout.background = static_cast<double>(buffer_.node<Root>(0).mBackground);
+    layout.set_background(buffer_.node<Root>(0).mBackground);
     end_ = offset + sizeof(Root);
     std::vector<NodePlace> children;
     using Tile = typename Root::Tile;
@@ -68,7 +67,7 @@ class TreeWalk {
       if (tile.isChild()) {
         children.push_back({offset + static_cast<uint64_t>(tile.child), origin});
       } else if (tile.state != 0) {
-        layout.tiles.push_back({origin, 4096, static_cast<double>(tile.value)});
+        layout.add_tile(origin, 4096, tile.value);
       }
     }
     return children;
@@ -88,7 +87,7 @@ class TreeWalk {
         children.push_back(
             {place.offset + static_cast<uint64_t>(node.mTable[entry].child), origin});
       } else {
-        layout.tiles.push_back({origin, kEntrySize, static_cast<double>(node.mTable[entry].value)});
+        layout.add_tile(origin, kEntrySize, node.mTable[entry].value);
       }
     }
   }
@@ -168,11 +167,11 @@ std::size_t leaf_size(const Leaf& leaf) {
 }
 
 template <class Build>
-ValueScan take_chunk(const VolumeFile& file, const LeafChunk& chunk,
-                     const std::vector<NodePlace>& leaves, const FieldAssembly& assembly) {
+GridScan take_chunk(const VolumeFile& file, const LeafChunk& chunk,
+                    const std::vector<NodePlace>& leaves, const GridAssembly& assembly) {
   using Leaf = typename nanovdb::NanoLeaf<Build>::DataType;
   using Value = typename Leaf::ValueType;
-  ValueScan scan;
+  GridScan scan;
   std::array<Value, kLeafVoxels> values;
   for (std::size_t i = chunk.first; i < chunk.last; ++i) {
     const std::size_t offset = leaves[i].offset - leaves[chunk.first].offset;
@@ -195,8 +194,8 @@ ValueScan take_chunk(const VolumeFile& file, const LeafChunk& chunk,
 
 /// Reads all leaves: one thread reads and uncompresses, all decode.
 template <class Build>
-ValueScan read_leaves(const VolumeFile& file, NvdbBytes& bytes,
-                      const std::vector<NodePlace>& leaves, const FieldAssembly& assembly) {
+GridScan read_leaves(const VolumeFile& file, NvdbBytes& bytes, const std::vector<NodePlace>& leaves,
+                     const GridAssembly& assembly) {
   std::size_t next = 0;
   return scan_chunks<LeafChunk>(
       [&] {
@@ -208,8 +207,8 @@ ValueScan read_leaves(const VolumeFile& file, NvdbBytes& bytes,
 }
 
 struct ReadGrid {
-  std::unique_ptr<FieldAssembly> assembly;
-  ValueScan scan;
+  std::unique_ptr<GridAssembly> assembly;
+  GridScan scan;
 };
 
 template <class Build>
@@ -220,8 +219,8 @@ ReadGrid read_grid_as(const VolumeFile& file, const NvdbGrid& grid, const GridIn
   TreeWalk<Build> walk(file, bytes);
   walk.read(head.node_offsets[3]);
   ReadGrid result;
-  result.assembly = std::make_unique<FieldAssembly>(grid_place(file.name(), info.name), options,
-                                                    std::move(walk.layout), keep_values);
+  result.assembly = std::make_unique<GridAssembly>(file.name(), info.name, options,
+                                                   std::move(walk.layout), keep_values);
   result.scan = read_leaves<Build>(file, bytes, walk.leaves, *result.assembly);
   return result;
 }
@@ -244,6 +243,8 @@ GridReader reader_of(nanovdb::GridType type) {
       return read_grid_as<nanovdb::Fp16>;
     case nanovdb::GridType::FpN:
       return read_grid_as<nanovdb::FpN>;
+    case nanovdb::GridType::Vec3f:
+      return read_grid_as<nanovdb::Vec3f>;
     default:
       return nullptr;
   }
@@ -260,6 +261,7 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file,
     info.type = nvdb_value_type(grid);
     info.grid_class = nvdb_class_name(grid.grid_class);
     info.stored_bytes = grid.extent.stored_size;
+    info.channels = grid.type == nanovdb::GridType::Vec3f ? 3 : 1;
     NvdbBytes bytes(file, grid.extent);
     info.index_to_world = read_nvdb_head(file, grid, bytes).index_to_world;
     info.reason = reader_of(grid.type) != nullptr ? reason_against_class(info.grid_class)
@@ -290,14 +292,14 @@ std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file) {
   return infos;
 }
 
-LoadedField load_nvdb_field(const VolumeFile& file, const LoadOptions& options) {
+std::vector<LoadedField> load_nvdb_fields(const VolumeFile& file, const LoadOptions& options) {
   const std::vector<NvdbGrid> grids = read_nvdb_directory(file);
   const std::vector<GridInfo> infos = describe_directory(file, grids);
   const GridInfo& info = find_grid(file.name(), infos, options.selection);
+  check_selected(file.name(), info, options);
   const NvdbGrid& grid = grids[static_cast<std::size_t>(info.index)];
-  if (!info.loadable) fail("{}: {}", grid_place(file.name(), info.name), info.reason);
   ReadGrid result = reader_of(grid.type)(file, grid, info, options, true);
-  return std::move(*result.assembly).finish(info.name, info.index_to_world, result.scan);
+  return std::move(*result.assembly).finish(info, result.scan);
 }
 
 }  // namespace freepath::io

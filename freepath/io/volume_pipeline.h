@@ -15,23 +15,23 @@ namespace freepath::io {
 /// @return the merge of all scans
 /// @throws what `next` or `take` throws
 template <class Chunk, class Next, class Take>
-ValueScan scan_chunks(const Next& next, const Take& take) {
+GridScan scan_chunks(const Next& next, const Take& take) {
   using tbb::filter_mode;
   using ChunkPointer = std::shared_ptr<Chunk>;
-  ValueScan total;
+  GridScan total;
   const auto read = [&](tbb::flow_control& control) {
     ChunkPointer chunk = next();
     if (!chunk) control.stop();
     return chunk;
   };
   const auto work = [&](const ChunkPointer& chunk) { return take(*chunk); };
-  const auto merge = [&](const ValueScan& scan) { total.merge(scan); };
+  const auto merge = [&](const GridScan& scan) { total.merge(scan); };
   // As many as keep all threads busy, and no more, since each is a megabyte.
   const auto in_flight = 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   tbb::parallel_pipeline(
       in_flight, tbb::make_filter<void, ChunkPointer>(filter_mode::serial_in_order, read) &
-                     tbb::make_filter<ChunkPointer, ValueScan>(filter_mode::parallel, work) &
-                     tbb::make_filter<ValueScan, void>(filter_mode::serial_out_of_order, merge));
+                     tbb::make_filter<ChunkPointer, GridScan>(filter_mode::parallel, work) &
+                     tbb::make_filter<GridScan, void>(filter_mode::serial_out_of_order, merge));
   return total;
 }
 

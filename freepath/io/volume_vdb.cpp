@@ -86,27 +86,30 @@ Mask mask_from(std::span<const std::byte> bytes) {
   return mask;
 }
 
+template <class T>
+VdbValueFormat format_of(const VdbGrid& grid) {
+  return {grid.compression, sizeof(T), grid.half ? 2 * ValueChannels<T>::kCount : sizeof(T)};
+}
+
 /// Walks the topology of a grid: from the file's depth-first order of nodes to a layout.
 template <class T>
 class TopologyWalk {
  public:
   TopologyWalk(const VolumeFile& file, uint64_t offset, const VdbDirectory& directory,
                const VdbGrid& grid)
-      : cursor_(file, offset),
-        format_{grid.compression, sizeof(T), grid.half ? 2 : sizeof(T)},
-        decoder_(directory, grid) {}
+      : cursor_(file, offset), format_(format_of<T>(grid)), decoder_(directory, grid) {}
 
   /// Reads everything; the cursor then stands at the first leaf's values.
-  VolumeLayout read() {
+  GridLayout read() {
     const auto buffers = cursor_.take<uint32_t>();
     if (buffers != 1) cursor_.file().fail_damaged(fmt::format("leaves with {} buffers", buffers));
-    layout_.background = static_cast<double>(cursor_.take<T>());
+    layout_.set_background(cursor_.take<T>());
     const auto tiles = cursor_.take<uint32_t>();
     const auto children = cursor_.take<uint32_t>();
     for (uint32_t i = 0; i < tiles; ++i) {
       const Vec3i origin = take_root_origin();
       const T value = cursor_.take<T>();
-      if (cursor_.take<uint8_t>() != 0) add_tile(origin, 4096, value);
+      if (cursor_.take<uint8_t>() != 0) layout_.add_tile(origin, 4096, value);
     }
     for (uint32_t i = 0; i < children; ++i) read_node<5, 4, 3>(take_root_origin());
     return std::move(layout_);
@@ -127,16 +130,12 @@ class TopologyWalk {
     return origin;
   }
 
-  void add_tile(const Vec3i& origin, int size, T value) {
-    layout_.tiles.push_back({origin, size, static_cast<double>(value)});
-  }
-
   /// A node with 2^kLog2 entries a side, whose children have the sizes that follow.
   template <int kLog2, int... kChildren>
   void read_node(const Vec3i& origin) {
     if constexpr (sizeof...(kChildren) == 0) {
       cursor_.skip(kLeafMaskBytes);  // the mask stands before the leaf's values again
-      layout_.leaves.push_back(origin);
+      layout_.add_leaf(origin);
     } else {
       read_inner_node<kLog2, kChildren...>(origin);
     }
@@ -156,8 +155,8 @@ class TopologyWalk {
       decoder_.decode(cursor_.peek(0, block), active, std::span(values));
       for (auto entry = active.beginOn(); entry; ++entry) {
         if (children.isOn(entry.pos())) continue;
-        add_tile(entry_origin<kLog2>(origin, entry.pos(), kEntrySize), kEntrySize,
-                 values[entry.pos()]);
+        layout_.add_tile(entry_origin<kLog2>(origin, entry.pos(), kEntrySize), kEntrySize,
+                         values[entry.pos()]);
       }
     }
     cursor_.skip(block);
@@ -178,7 +177,7 @@ class TopologyWalk {
   FileCursor cursor_;
   VdbValueFormat format_;
   ValueDecoder decoder_;
-  VolumeLayout layout_;
+  GridLayout layout_{ValueChannels<T>::kCount};
 };
 
 /// Some leaves in a row, as they stand in the file.
@@ -221,9 +220,9 @@ class ChunkReader {
 };
 
 template <class T>
-ValueScan take_chunk(const LeafChunk& chunk, const VdbDirectory& directory, const VdbGrid& grid,
-                     const FieldAssembly& assembly) {
-  ValueScan scan;
+GridScan take_chunk(const LeafChunk& chunk, const VdbDirectory& directory, const VdbGrid& grid,
+                    const GridAssembly& assembly) {
+  GridScan scan;
   ValueDecoder decoder(directory, grid);
   std::array<T, kLeafVoxels> values;
   std::size_t begin = 0;
@@ -241,10 +240,9 @@ ValueScan take_chunk(const LeafChunk& chunk, const VdbDirectory& directory, cons
 
 /// Reads the leaves from `offset` on: one thread reads, all decode.
 template <class T>
-ValueScan read_leaves(const VolumeFile& file, uint64_t offset, const VdbDirectory& directory,
-                      const VdbGrid& grid, const FieldAssembly& assembly) {
-  const VdbValueFormat format{grid.compression, sizeof(T), grid.half ? 2 : sizeof(T)};
-  ChunkReader reader(file, offset, format, assembly.layout().leaves.size());
+GridScan read_leaves(const VolumeFile& file, uint64_t offset, const VdbDirectory& directory,
+                     const VdbGrid& grid, const GridAssembly& assembly) {
+  ChunkReader reader(file, offset, format_of<T>(grid), assembly.leaf_count());
   return scan_chunks<LeafChunk>(
       [&] { return reader.next(); },
       [&](const LeafChunk& chunk) { return take_chunk<T>(chunk, directory, grid, assembly); });
@@ -311,7 +309,14 @@ std::string value_type(const VdbGrid& grid) {
   type.remove_prefix(kPrefix.size());
   type.remove_suffix(kSuffix.size());
   if (type == "float" && grid.half) return "half";
+  if (type == "vec3s" && grid.half) return "vec3h";
   return std::string(type);
+}
+
+/// Densities in a voxel of a type; 0 if it can't be read.
+int channels_of(std::string_view type) {
+  if (type == "float" || type == "half" || type == "double") return 1;
+  return type == "vec3s" || type == "vec3h" || type == "vec3d" ? 3 : 0;
 }
 
 /// What the directory tells of each grid, without reading voxels.
@@ -324,9 +329,10 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file, const VdbDirect
     info.type = value_type(grid);
     info.grid_class = grid.grid_class;
     info.stored_bytes = grid.end - grid.begin;
-    info.reason = info.type == "float" || info.type == "half" || info.type == "double"
-                      ? reason_against_class(info.grid_class)
-                      : reason_against_type(info.type);
+    const int channels = channels_of(info.type);
+    info.channels = std::max(channels, 1);
+    info.reason =
+        channels > 0 ? reason_against_class(info.grid_class) : reason_against_type(info.type);
     const PlacedTransform transform = read_transform(file, directory, grid);
     info.index_to_world = transform.index_to_world;
     if (info.reason.empty()) info.reason = transform.reason;
@@ -339,8 +345,8 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file, const VdbDirect
 
 /// Reads the voxels of a grid; the assembly has no bricks unless `keep_values`.
 struct ReadGrid {
-  std::unique_ptr<FieldAssembly> assembly;
-  ValueScan scan;
+  std::unique_ptr<GridAssembly> assembly;
+  GridScan scan;
 };
 
 template <class T>
@@ -348,8 +354,8 @@ ReadGrid read_grid(const VolumeFile& file, const VdbDirectory& directory, const 
                    const std::string& name, const LoadOptions& options, bool keep_values) {
   TopologyWalk<T> walk(file, read_transform(file, directory, grid).end, directory, grid);
   ReadGrid result;
-  result.assembly = std::make_unique<FieldAssembly>(grid_place(file.name(), name), options,
-                                                    walk.read(), keep_values);
+  result.assembly =
+      std::make_unique<GridAssembly>(file.name(), name, options, walk.read(), keep_values);
   result.scan = read_leaves<T>(file, walk.offset(), directory, grid, *result.assembly);
   return result;
 }
@@ -359,9 +365,12 @@ ReadGrid read_grid(const VolumeFile& file, const VdbDirectory& directory, const 
   const VdbGrid& grid = directory.grids[static_cast<std::size_t>(info.index)];
   const VdbGrid& tree =
       grid.tree_of < 0 ? grid : directory.grids[static_cast<std::size_t>(grid.tree_of)];
-  return info.type == "double"
-             ? read_grid<double>(file, directory, tree, info.name, options, keep_values)
-             : read_grid<float>(file, directory, tree, info.name, options, keep_values);
+  const auto read_as = [&]<class T>(T /*value*/) {
+    return read_grid<T>(file, directory, tree, info.name, options, keep_values);
+  };
+  if (info.type == "double") return read_as(double{});
+  if (info.type == "vec3d") return read_as(openvdb::Vec3d{});
+  return info.channels == 3 ? read_as(openvdb::Vec3s{}) : read_as(float{});
 }
 
 }  // namespace
@@ -370,7 +379,7 @@ std::vector<GridInfo> list_vdb_grids(const VolumeFile& file) {
   const VdbDirectory directory = read_vdb_directory(file);
   std::vector<GridInfo> grids = describe_directory(file, directory);
   for (GridInfo& info : grids) {
-    if (info.type != "float" && info.type != "half" && info.type != "double") continue;
+    if (channels_of(info.type) == 0) continue;
     try {
       const ReadGrid read = read_grid(file, directory, info, {}, false);
       read.assembly->describe(read.scan, info);
@@ -381,13 +390,13 @@ std::vector<GridInfo> list_vdb_grids(const VolumeFile& file) {
   return grids;
 }
 
-LoadedField load_vdb_field(const VolumeFile& file, const LoadOptions& options) {
+std::vector<LoadedField> load_vdb_fields(const VolumeFile& file, const LoadOptions& options) {
   const VdbDirectory directory = read_vdb_directory(file);
   const std::vector<GridInfo> grids = describe_directory(file, directory);
   const GridInfo& info = find_grid(file.name(), grids, options.selection);
-  if (!info.loadable) fail("{}: {}", grid_place(file.name(), info.name), info.reason);
+  check_selected(file.name(), info, options);
   ReadGrid read = read_grid(file, directory, info, options, true);
-  return std::move(*read.assembly).finish(info.name, info.index_to_world, read.scan);
+  return std::move(*read.assembly).finish(info, read.scan);
 }
 
 }  // namespace freepath::io

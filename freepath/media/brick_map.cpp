@@ -21,6 +21,32 @@ std::size_t voxel_offset(const Vec3i& voxel) {
 
 }  // namespace
 
+void BrickMap::widen_index(const Vec3i& origin, const Vec3i& brick_counts) {
+  if (origin == origin_ && brick_counts == brick_counts_) return;
+  const Vec3i first = (origin_ - origin) / kBrickSize;
+  const Vec3i last = first + brick_counts_;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (first[axis] < 0 || last[axis] > brick_counts[axis]) {
+      fail("a wider index of bricks must hold the present one");
+    }
+  }
+  decltype(index_) wider(std::size_t(brick_counts.x) * std::size_t(brick_counts.y) *
+                         std::size_t(brick_counts.z));
+  auto row = index_.begin();
+  for (int x = first.x; x < last.x; ++x) {
+    for (int y = first.y; y < last.y; ++y) {
+      const std::size_t entry = (std::size_t(x) * std::size_t(brick_counts.y) + std::size_t(y)) *
+                                    std::size_t(brick_counts.z) +
+                                std::size_t(first.z);
+      std::copy_n(row, brick_counts_.z, wider.begin() + static_cast<std::ptrdiff_t>(entry));
+      row += brick_counts_.z;
+    }
+  }
+  index_ = std::move(wider);
+  origin_ = origin;
+  brick_counts_ = brick_counts;
+}
+
 float BrickMap::value(const Vec3i& voxel) const {
   const Vec3i brick(brick_of(voxel.x - origin_.x), brick_of(voxel.y - origin_.y),
                     brick_of(voxel.z - origin_.z));

@@ -40,6 +40,11 @@ class BrickMap {
   std::span<const float> voxels() const { return voxels_; }
   std::size_t brick_count() const { return voxels_.size() / kBrickVoxels; }
 
+  /// Puts the same voxels behind an index of more bricks, as other maps may have.
+  /// @param origin first voxel of the first brick, a multiple of 8 [index]
+  /// @param brick_counts the present bricks must be among these
+  void widen_index(const Vec3i& origin, const Vec3i& brick_counts);
+
   /// Value of a voxel, 0 outside [index].
   float value(const Vec3i& voxel) const;
 

@@ -20,23 +20,33 @@ namespace freepath::HWY_NAMESPACE {
 
 class FieldLookup {
  public:
-  /// A look-up on its way, one row a lane.
-  struct State {
+  /// The voxel that is read of a component, one row a lane.
+  struct Tap {
     HWY_ALIGN_MAX int32_t voxel[3][kLanes];   ///< Base voxel, from the first of the index.
     HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
     HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
+  };
+
+  /// A look-up on its way.
+  struct State {
     HWY_ALIGN_MAX int32_t address[Medium::kMaxComponents][kLanes];  ///< Voxel in the array.
+    Tap taps[Medium::kMaxComponents];  ///< The first serves all components of an aligned medium.
   };
 
   explicit FieldLookup(const MediumView& medium)
       : medium_(medium), size_(static_cast<float>(medium.cell_size)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      last_voxel_[axis] = static_cast<float>(medium.brick_counts[axis] * BrickMap::kBrickSize - 2);
+    for (int k = 0; k < medium.component_count; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int voxels = medium.components[k].brick_counts[axis] * BrickMap::kBrickSize;
+        last_voxel_[k][axis] = static_cast<float>(voxels - 2);
+      }
     }
   }
 
   /// Stage 1: the voxel to read at a point [walk space]; the random words choose among the eight
-  /// neighbours under stochastic interpolation. One tap serves all components.
+  /// neighbours under stochastic interpolation. One tap serves all components of an aligned medium;
+  /// in others each component has its own, by the same random words: what is estimated is linear in
+  /// the densities, so they need not be independent.
   HWY_INLINE void aim(const VecF (&point)[3], MaskF lanes, VecU bits0, VecU bits1,
                       State& state) const {
     if (medium_.components[0].function != nullptr) return aim_at_function(point, lanes, state);
@@ -45,52 +55,35 @@ class FieldLookup {
     random[1] = hn::ShiftRight<11>(bits1);
     random[2] = hn::Or(hn::ShiftLeft<10>(hn::And(bits0, hn::Set(kUint, 0x7FF))),
                        hn::And(bits1, hn::Set(kUint, 0x3FF)));
-    VecI voxel[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      VecF place = hn::Mul(point[axis], set(size_));
-      if (medium_.interpolation != Interpolation::kNearest) place = hn::Sub(place, set(0.5F));
-      place = hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last_voxel_[axis]));
-      const VecF base = hn::Floor(place);
-      voxel[axis] = small_to_int(base);
-      const VecF fraction = hn::Sub(place, base);
-      if (medium_.interpolation == Interpolation::kStochastic) {
-        // 21 bits an axis, in the middle of their interval so that rounding favours no side.
-        const VecF u =
-            hn::Mul(hn::Add(hn::ConvertTo(kFloat, hn::BitCast(kInt, random[axis])), set(0.5F)),
-                    set(0x1p-21F));
-        const VecI next = hn::VecFromMask(kInt, int_mask(hn::Lt(u, fraction)));
-        voxel[axis] = hn::Sub(voxel[axis], next);  // a true lane is -1
-      } else if (medium_.interpolation == Interpolation::kTrilinear) {
-        hn::Store(fraction, kFloat, state.fraction[axis]);
-      }
-      voxel[axis] = hn::IfThenElseZero(int_mask(lanes), voxel[axis]);
-      hn::Store(voxel[axis], kInt, state.voxel[axis]);
-    }
-    const VecI entry = brick_entry(voxel);
-    hn::Store(entry, kInt, state.entry);
+    if (!medium_.aligned) return aim_at_each(point, lanes, random, state);
+    VecF place[3];
+    for (int axis = 0; axis < 3; ++axis) place[axis] = hn::Mul(point[axis], set(size_));
+    aim_at_voxel(0, place, lanes, random, state.taps[0]);
   }
 
   /// Asks for the index entries of the voxels aimed at.
   HWY_INLINE void prefetch_index(const State& state) const {
     if (medium_.components[0].function != nullptr) return;
     for (int k = 0; k < medium_.component_count; ++k) {
-      prefetch_lanes(medium_.components[k].index, state.entry);
+      prefetch_lanes(medium_.components[k].index, tap_of(k, state).entry);
     }
   }
   /// The same for one component a lane.
   HWY_INLINE void prefetch_index(const State& state, const int32_t (&component)[kLanes]) const {
     if (medium_.components[0].function != nullptr) return;
     for (size_t lane = 0; lane < kLanes; ++lane) {
-      hwy::Prefetch(medium_.components[component[lane]].index + state.entry[lane]);
+      const int32_t k = component[lane];
+      hwy::Prefetch(medium_.components[k].index + tap_of(k, state).entry[lane]);
     }
   }
 
   /// Stage 2: the brick of that voxel.
   HWY_INLINE void fetch(State& state) const {
     if (medium_.components[0].function != nullptr) return compute(state);
-    const VecI within = voxel_in_brick(state);
-    const VecI entry = hn::Load(kInt, state.entry);
+    VecI within = voxel_in_brick(state.taps[0]);
+    VecI entry = hn::Load(kInt, state.taps[0].entry);
     for (int k = 0; k < medium_.component_count; ++k) {
+      if (k > 0) take_next_tap(k, state, entry, within);
       hn::Store(voxel_address(k, entry, within), kInt, state.address[k]);
       prefetch_lanes(medium_.components[k].voxels, state.address[k]);
     }
@@ -98,10 +91,11 @@ class FieldLookup {
   /// The same for one component a lane; the other components' bricks stay untouched.
   HWY_INLINE void fetch(State& state, const int32_t (&component)[kLanes]) const {
     if (medium_.components[0].function != nullptr) return compute(state);
-    const VecI within = voxel_in_brick(state);
-    const VecI entry = hn::Load(kInt, state.entry);
+    VecI within = voxel_in_brick(state.taps[0]);
+    VecI entry = hn::Load(kInt, state.taps[0].entry);
     const VecI wanted = hn::Load(kInt, component);
     for (int k = 0; k < medium_.component_count; ++k) {
+      if (k > 0) take_next_tap(k, state, entry, within);
       const MaskI mine = hn::Eq(wanted, hn::Set(kInt, k));
       const VecI address = voxel_address(k, hn::IfThenElseZero(mine, entry), within);
       hn::Store(hn::IfThenElseZero(mine, address), kInt, state.address[k]);
@@ -131,21 +125,75 @@ class FieldLookup {
   }
 
  private:
+  HWY_INLINE const Tap& tap_of(int k, const State& state) const {
+    return state.taps[medium_.aligned ? 0 : k];
+  }
+
+  /// What the taps before the k-th have left becomes that of the k-th, where that is another.
+  HWY_INLINE void take_next_tap(int k, const State& state, VecI& entry, VecI& within) const {
+    if (medium_.aligned) return;
+    entry = hn::Load(kInt, state.taps[k].entry);
+    within = voxel_in_brick(state.taps[k]);
+  }
+
+  /// Aims in a medium whose components have voxels of their own.
+  HWY_NOINLINE void aim_at_each(const VecF (&point)[3], MaskF lanes, const VecU (&random)[3],
+                                State& state) const {
+    for (int k = 0; k < medium_.component_count; ++k) {
+      const AffineMap& map = medium_.components[k].walk_to_voxels;
+      VecF place[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        place[axis] = set(map.offset[axis]);
+        for (int from = 0; from < 3; ++from) {
+          place[axis] = hn::MulAdd(point[from], set(map.linear[from][axis]), place[axis]);
+        }
+      }
+      aim_at_voxel(k, place, lanes, random, state.taps[k]);
+    }
+  }
+
+  /// Aims at a place in the voxels of component k. Beyond the voxels it is held at the border of
+  /// the index, which is 0.
+  HWY_INLINE void aim_at_voxel(int k, const VecF (&point)[3], MaskF lanes, const VecU (&random)[3],
+                               Tap& tap) const {
+    VecI voxel[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      VecF place = point[axis];
+      if (medium_.interpolation != Interpolation::kNearest) place = hn::Sub(place, set(0.5F));
+      place = hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last_voxel_[k][axis]));
+      const VecF base = hn::Floor(place);
+      voxel[axis] = small_to_int(base);
+      const VecF fraction = hn::Sub(place, base);
+      if (medium_.interpolation == Interpolation::kStochastic) {
+        // 21 bits an axis, in the middle of their interval so that rounding favours no side.
+        const VecF u =
+            hn::Mul(hn::Add(hn::ConvertTo(kFloat, hn::BitCast(kInt, random[axis])), set(0.5F)),
+                    set(0x1p-21F));
+        const VecI next = hn::VecFromMask(kInt, int_mask(hn::Lt(u, fraction)));
+        voxel[axis] = hn::Sub(voxel[axis], next);  // a true lane is -1
+      } else if (medium_.interpolation == Interpolation::kTrilinear) {
+        hn::Store(fraction, kFloat, tap.fraction[axis]);
+      }
+      voxel[axis] = hn::IfThenElseZero(int_mask(lanes), voxel[axis]);
+      hn::Store(voxel[axis], kInt, tap.voxel[axis]);
+    }
+    hn::Store(brick_entry(k, voxel), kInt, tap.entry);
+  }
+
   /// Keeps the points where a density function is to be evaluated.
   HWY_INLINE void aim_at_function(const VecF (&point)[3], MaskF lanes, State& state) const {
     for (int axis = 0; axis < 3; ++axis) {
       const VecF place = hn::MulAdd(hn::IfThenElseZero(lanes, point[axis]),
                                     set(medium_.cell_edge[axis]), set(medium_.cell_origin[axis]));
-      hn::Store(place, kFloat, state.fraction[axis]);
+      hn::Store(place, kFloat, state.taps[0].fraction[axis]);
     }
   }
 
   /// Evaluates density functions at those points, one call a component.
   HWY_NOINLINE void compute(State& state) const {
+    const auto& [x, y, z] = state.taps[0].fraction;
     Vec3f positions[kLanes];
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-      positions[lane] = {state.fraction[0][lane], state.fraction[1][lane], state.fraction[2][lane]};
-    }
+    for (size_t lane = 0; lane < kLanes; ++lane) positions[lane] = {x[lane], y[lane], z[lane]};
     for (int k = 0; k < medium_.component_count; ++k) {
       float densities[kLanes] = {};
       medium_.components[k].function->evaluate(positions, densities);
@@ -154,17 +202,16 @@ class FieldLookup {
     }
   }
 
-  HWY_INLINE VecI brick_entry(const VecI (&voxel)[3]) const {
-    const VecI row =
-        hn::Add(hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, medium_.brick_counts[1])),
-                hn::ShiftRight<3>(voxel[1]));
-    return hn::Add(hn::Mul(row, hn::Set(kInt, medium_.brick_counts[2])),
-                   hn::ShiftRight<3>(voxel[2]));
+  HWY_INLINE VecI brick_entry(int k, const VecI (&voxel)[3]) const {
+    const auto& counts = medium_.components[k].brick_counts;
+    const VecI row = hn::Add(hn::Mul(hn::ShiftRight<3>(voxel[0]), hn::Set(kInt, counts[1])),
+                             hn::ShiftRight<3>(voxel[1]));
+    return hn::Add(hn::Mul(row, hn::Set(kInt, counts[2])), hn::ShiftRight<3>(voxel[2]));
   }
 
-  static HWY_INLINE VecI voxel_in_brick(const State& state) {
-    const VecI voxel[3] = {hn::Load(kInt, state.voxel[0]), hn::Load(kInt, state.voxel[1]),
-                           hn::Load(kInt, state.voxel[2])};
+  static HWY_INLINE VecI voxel_in_brick(const Tap& tap) {
+    const VecI voxel[3] = {hn::Load(kInt, tap.voxel[0]), hn::Load(kInt, tap.voxel[1]),
+                           hn::Load(kInt, tap.voxel[2])};
     return voxel_in_brick(voxel);
   }
   static HWY_INLINE VecI voxel_in_brick(const VecI (&voxel)[3]) {
@@ -180,12 +227,13 @@ class FieldLookup {
   }
 
   HWY_INLINE VecF trilinear(int k, const State& state, MaskI lanes) const {
+    const Tap& tap = tap_of(k, state);
     VecI voxel[2][3];
     VecF weight[2][3];
     for (int axis = 0; axis < 3; ++axis) {
-      voxel[0][axis] = hn::IfThenElseZero(lanes, hn::Load(kInt, state.voxel[axis]));
+      voxel[0][axis] = hn::IfThenElseZero(lanes, hn::Load(kInt, tap.voxel[axis]));
       voxel[1][axis] = hn::Add(voxel[0][axis], hn::Set(kInt, 1));
-      weight[1][axis] = hn::Load(kFloat, state.fraction[axis]);
+      weight[1][axis] = hn::Load(kFloat, tap.fraction[axis]);
       weight[0][axis] = hn::Sub(set(1.0F), weight[1][axis]);
     }
     VecF sum = hn::Zero(kFloat);
@@ -194,7 +242,7 @@ class FieldLookup {
         const VecF weight_xy = hn::Mul(weight[x][0], weight[y][1]);
         for (int z = 0; z < 2; ++z) {
           const VecI corner[3] = {voxel[x][0], voxel[y][1], voxel[z][2]};
-          const VecI address = voxel_address(k, brick_entry(corner), voxel_in_brick(corner));
+          const VecI address = voxel_address(k, brick_entry(k, corner), voxel_in_brick(corner));
           const VecF value = hn::GatherIndex(kFloat, medium_.components[k].voxels, address);
           sum = hn::MulAdd(hn::Mul(weight_xy, weight[z][2]), value, sum);
         }
@@ -205,7 +253,7 @@ class FieldLookup {
 
   MediumView medium_;
   float size_;
-  float last_voxel_[3];
+  float last_voxel_[Medium::kMaxComponents][3];
 };
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -53,12 +53,6 @@ void check_component(const Component& component, const Component& first, std::si
   if (!is_finite(field.index_to_world)) {
     fail("grid '{}': its transform is not finite; set another", field.name);
   }
-  if (field.index_to_world != first.density->index_to_world ||
-      field.voxels.origin() != first.density->voxels.origin() ||
-      field.voxels.brick_counts() != first.density->voxels.brick_counts()) {
-    fail("grids '{}' and '{}' differ in transform or bounds; components must share them",
-         field.name, first.density->name);
-  }
 }
 
 /// Whether the channels are equal but for rounding: (1 - albedo) · sigma and albedo · sigma, each
@@ -68,9 +62,6 @@ bool is_grey_but_for_rounding(const Spectrum& s) {
   const auto [low, high] = std::minmax({s.x, s.y, s.z});
   return high - low <= kTolerance * high;
 }
-
-/// Lanes count voxels in floats (small_to_int in base/lanes-inl.h), and interpolate between them.
-constexpr int kMaxBricksAlongAxis = (1 << 23) / BrickMap::kBrickSize;
 
 /// Edge of a cube with a voxel's volume [world], for the cost model alone.
 double voxel_edge(const Matrix4d& index_to_world) {
@@ -90,7 +81,7 @@ Medium::WalkCells mark_empty_cells(const SuperVoxels& cells) {
 }  // namespace
 
 Medium::Medium(std::vector<Component> components, int super_voxel,
-               std::optional<Matrix4d> world_to_index)
+               const std::optional<Matrix4d>& world_to_index)
     : components_(std::move(components)) {
   if (components_.empty() || components_.size() > kMaxComponents) {
     fail("a medium has 1 to {} components, not {}", kMaxComponents, components_.size());
@@ -104,46 +95,54 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
     build_from_voxels(super_voxel);
   }
   walk_cells_ = mark_empty_cells(super_voxels_);
+  set_world_to_walk(world_to_index);
+}
 
-  const Matrix4d& index_to_world = components_[0].density->index_to_world;
-  if (!world_to_index) {
-    const double determinant = index_to_world.determinant();
+std::vector<const Field*> Medium::fields() const {
+  std::vector<const Field*> fields;
+  for (const Component& component : components_) fields.push_back(component.density.get());
+  return fields;
+}
+
+void Medium::set_world_to_walk(const std::optional<Matrix4d>& world_to_index) {
+  if (world_to_index && !aligned()) {
+    fail("fields that differ in transform or bounds can't be given one map from the world");
+  }
+  Matrix4d to_index;
+  if (world_to_index) {
+    to_index = *world_to_index;
+  } else {
+    const double determinant = space_.index_to_world.determinant();
     if (!std::isfinite(determinant) || determinant == 0) {
       fail("grid '{}': its transform has no inverse", components_[0].density->name);
     }
-    world_to_index = index_to_world.inverse();
+    to_index = space_.index_to_world.inverse();
   }
-  const Vec3i origin =
-      components_[0].density->function ? Vec3i(0) : components_[0].density->voxels.origin();
   const double scale = 1.0 / super_voxels_.cell_size;
   for (int to = 0; to < 3; ++to) {
-    for (int from = 0; from < 3; ++from) {
-      world_to_walk_[from][to] = (*world_to_index)[from][to] * scale;
-    }
-    world_to_walk_[3][to] = ((*world_to_index)[3][to] - origin[to] + 0.5) * scale;
+    for (int from = 0; from < 3; ++from) world_to_walk_[from][to] = to_index[from][to] * scale;
+    world_to_walk_[3][to] = (to_index[3][to] - space_.origin[to] + 0.5) * scale;
   }
 }
 
 void Medium::build_from_voxels(int super_voxel) {
-  std::vector<const BrickMap*> densities;
+  space_ = make_walk_space(fields());
+  std::vector<PlacedVoxels> densities;
   std::vector<float> extinction;
-  const Matrix4d& index_to_world = components_[0].density->index_to_world;
-  for (const Component& component : components_) {
-    densities.push_back(&component.density->voxels);
-    extinction.push_back(
-        static_cast<float>(largest(component.sigma_t()) * voxel_edge(index_to_world)));
+  const double edge = voxel_edge(space_.index_to_world);
+  for (std::size_t k = 0; k < components_.size(); ++k) {
+    densities.push_back({&components_[k].density->voxels, space_.to_component[k]});
+    extinction.push_back(static_cast<float>(largest(components_[k].sigma_t()) * edge));
   }
-  const Vec3i& bricks = densities[0]->brick_counts();
-  if (std::max({bricks.x, bricks.y, bricks.z}) > kMaxBricksAlongAxis) {
-    fail("grid '{}' is more than {} voxels long: positions along it exceed the precision of floats",
-         components_[0].density->name, kMaxBricksAlongAxis * BrickMap::kBrickSize);
-  }
-  super_voxels_ = build_super_voxels(densities, extinction, super_voxel);
+  super_voxels_ = build_super_voxels(densities, space_.voxel_counts, extinction, super_voxel);
 }
 
 void Medium::build_from_functions() {
   const DensityFunction& first = *components_[0].density->function;
   const Vec3i cells = first.cells;
+  space_.index_to_world = components_[0].density->index_to_world;
+  space_.voxel_counts = cells;
+  space_.to_component.assign(components_.size(), Matrix4d());
   super_voxels_.cell_size = 1;
   super_voxels_.counts = cells;
   super_voxels_.components = static_cast<int>(components_.size());
@@ -191,26 +190,24 @@ AffineMap Medium::world_to_walk(const Vec3d& origin) const {
   return map;
 }
 
+AffineMap Medium::walk_to_component(std::size_t component) const {
+  const Matrix4d& places = space_.to_component[component];
+  AffineMap map;
+  for (int to = 0; to < 3; ++to) {
+    for (int from = 0; from < 3; ++from) {
+      map.linear[from][to] = static_cast<float>(places[from][to] * super_voxels_.cell_size);
+    }
+    map.offset[to] = static_cast<float>(places[3][to]);
+  }
+  return map;
+}
+
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
   if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels_.counts)};
-  const BrickMap& map = components_[0].density->voxels;
-  Vec3i low = map.active_min();
-  Vec3i high = map.active_max();
-  for (const Component& component : components_) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], component.density->voxels.active_min()[axis]);
-      high[axis] = std::max(high[axis], component.density->voxels.active_max()[axis]);
-    }
-  }
-  const float reach = interpolation == Interpolation::kNearest ? 0.5F : 1.0F;
-  const float scale = 1.0F / static_cast<float>(super_voxels_.cell_size);
-  Box3f box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto origin = static_cast<float>(map.origin()[axis]);
-    box.min[axis] = (static_cast<float>(low[axis]) - reach - origin + 0.5F) * scale;
-    box.max[axis] = (static_cast<float>(high[axis]) + reach - origin + 0.5F) * scale;
-  }
-  return box;
+  const double reach = interpolation == Interpolation::kNearest ? 0.5 : 1.0;
+  const double scale = 1.0 / super_voxels_.cell_size;
+  const Box3d places = space_.bounds(fields(), reach);
+  return {Vec3f(places.min * scale), Vec3f(places.max * scale)};
 }
 
 Box3d Medium::world_bounds() const {

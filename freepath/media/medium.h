@@ -11,6 +11,7 @@
 #include "freepath/media/field.h"
 #include "freepath/media/page_allocator.h"
 #include "freepath/media/super_voxels.h"
+#include "freepath/media/walk_space.h"
 
 namespace freepath {
 
@@ -38,20 +39,23 @@ struct AffineMap {
   std::array<float, 3> offset{};
 };
 
-/// A sum of components in one index space, with bounds over super-voxels. Immutable once made, so
-/// threads share it freely.
+/// A sum of components, which may stand anyhow in the world and overlap, with bounds over
+/// super-voxels. Immutable once made, so threads share it freely.
+///
+/// Walks through components that share transform and layout of bricks are the fastest: one aim
+/// serves all. Others are aimed at one by one, by an affine map each.
 class Medium {
  public:
   static constexpr int kMaxComponents = 8;
 
-  /// @param components at least one; their densities must share index space and brick layout
+  /// @param components at least one; all of voxels, or all computed with the same cells
   /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
   /// @param world_to_index replaces the inverse of the fields' transform where that has none (a
-  ///   plane-parallel slab collapses x and y)
+  ///   plane-parallel slab collapses x and y); all fields must then share it
   /// @throws Error for coefficients that are negative or not finite, |g| >= 1, too many components,
-  ///   fields that differ in transform or bounds, an empty field
+  ///   an empty field, and as make_walk_space
   explicit Medium(std::vector<Component> components, int super_voxel = 0,
-                  std::optional<Matrix4d> world_to_index = {});
+                  const std::optional<Matrix4d>& world_to_index = {});
 
   /// The same medium with other bounds: maxima times `scale`, minima divided by it. Above 1 they
   /// are looser; below 1 they are no bounds, which methods that need them are biased by. To study
@@ -60,6 +64,8 @@ class Medium {
 
   const std::vector<Component>& components() const { return components_; }
   const SuperVoxels& super_voxels() const { return super_voxels_; }
+  /// Whether all components share transform and layout of bricks, so that one voxel serves all.
+  bool aligned() const { return space_.aligned; }
 
   /// What a step of a walk reads of a super-voxel: the maxima of the components, or, where all of
   /// them are 0, the empty radius negated in place of the first. Entry: cell · components.
@@ -71,6 +77,9 @@ class Medium {
   /// @param origin the point of the world that positions are relative to: where it is near the
   ///   medium, single precision holds them however far from the world's origin that is
   AffineMap world_to_walk(const Vec3d& origin = Vec3d(0)) const;
+  /// Walk space → place in a component's voxels, counted from the first of its index; the centre of
+  /// voxel i is at i + 1/2.
+  AffineMap walk_to_component(std::size_t component) const;
 
   /// Where the density may differ from 0 [walk space], which depends on the filter's reach.
   Box3f walk_bounds(Interpolation interpolation) const;
@@ -85,12 +94,15 @@ class Medium {
   bool emits() const;
 
  private:
+  std::vector<const Field*> fields() const;
   void build_from_voxels(int super_voxel);
   void build_from_functions();
+  void set_world_to_walk(const std::optional<Matrix4d>& world_to_index);
 
   std::vector<Component> components_;
   SuperVoxels super_voxels_;
   WalkCells walk_cells_;
+  WalkSpace space_;
   Matrix4d world_to_walk_;
 };
 

@@ -8,11 +8,9 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
                    const Vec3d& origin) {
   MediumView view;
   const SuperVoxels& cells = medium.super_voxels();
-  const BrickMap& map = medium.components()[0].density->voxels;
   const Box3f bounds = medium.walk_bounds(interpolation);
   for (int axis = 0; axis < 3; ++axis) {
     view.cell_counts[axis] = cells.counts[axis];
-    view.brick_counts[axis] = map.brick_counts()[axis];
     view.bounds_min[axis] = bounds.min[axis];
     view.bounds_max[axis] = bounds.max[axis];
   }
@@ -27,6 +25,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
       view.cell_edge[axis] = function->box.size()[axis] / static_cast<float>(function->cells[axis]);
     }
   }
+  view.aligned = medium.aligned();
   view.component_count = static_cast<int>(medium.components().size());
   for (int k = 0; k < view.component_count; ++k) {
     const Component& component = medium.components()[k];
@@ -34,6 +33,10 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
     target.function = component.density->function.get();
     target.index = component.density->voxels.index().data();
     target.voxels = component.density->voxels.voxels().data();
+    for (int axis = 0; axis < 3; ++axis) {
+      target.brick_counts[axis] = component.density->voxels.brick_counts()[axis];
+    }
+    target.walk_to_voxels = medium.walk_to_component(k);
     for (int slot = 0; slot < kChannels; ++slot) {
       const int from = channel < 0 ? slot : channel;
       target.sigma_a[slot] = component.sigma_a[from];

@@ -4,99 +4,89 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "freepath/base/error.h"
+#include "freepath/media/voxel_range.h"
 
 namespace freepath {
 namespace {
 
-constexpr std::size_t kMaxFineCells = std::size_t{4} << 20;  // 4³ cells only where they are few
-
-struct Range {
-  float minimum = std::numeric_limits<float>::infinity();
-  float maximum = -std::numeric_limits<float>::infinity();
-  void add(float value) {
-    minimum = std::min(minimum, value);
-    maximum = std::max(maximum, value);
-  }
-};
-
-/// Range of the voxels of one brick inside [begin, end), both local to the brick.
-void add_brick_part(const float* voxels, const Vec3i& begin, const Vec3i& end, Range& range) {
-  for (int x = begin.x; x < end.x; ++x) {
-    for (int y = begin.y; y < end.y; ++y) {
-      const float* row = voxels + (x << 6 | y << 3);
-      for (int z = begin.z; z < end.z; ++z) range.add(row[z]);
-    }
-  }
-}
-
-/// Range of the voxels [begin, end) of a map, counted from its first voxel; outside it is 0.
-Range range_of_voxels(const BrickMap& map, const Vec3i& begin, const Vec3i& end) {
-  Range range;
-  const Vec3i& counts = map.brick_counts();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (begin[axis] < 0 || end[axis] > counts[axis] * BrickMap::kBrickSize) range.add(0.0F);
-  }
-  const Vec3i first(begin.x >> 3, begin.y >> 3, begin.z >> 3);
-  const Vec3i last((end.x - 1) >> 3, (end.y - 1) >> 3, (end.z - 1) >> 3);
-  for (int bx = std::max(first.x, 0); bx <= std::min(last.x, counts.x - 1); ++bx) {
-    for (int by = std::max(first.y, 0); by <= std::min(last.y, counts.y - 1); ++by) {
-      for (int bz = std::max(first.z, 0); bz <= std::min(last.z, counts.z - 1); ++bz) {
-        const std::size_t entry = (static_cast<std::size_t>(bx) * counts.y + by) * counts.z + bz;
-        const std::size_t brick = map.index()[entry];
-        if (brick == 0) {
-          range.add(0.0F);
-          continue;
-        }
-        const Vec3i corner = Vec3i(bx, by, bz) * BrickMap::kBrickSize;
-        Vec3i part_begin;
-        Vec3i part_end;
-        for (int axis = 0; axis < 3; ++axis) {
-          part_begin[axis] = std::max(begin[axis] - corner[axis], 0);
-          part_end[axis] = std::min(end[axis] - corner[axis], BrickMap::kBrickSize);
-        }
-        add_brick_part(map.voxels().data() + brick * BrickMap::kBrickVoxels, part_begin, part_end,
-                       range);
-      }
-    }
-  }
-  return range;
-}
+constexpr std::size_t kFewCells = std::size_t{4} << 20;
+constexpr std::size_t kMaxNumbers = std::size_t{1} << 30;  // lanes address them by 32 bits
 
 std::size_t cell_index(const Vec3i& counts, int x, int y, int z) {
   return (static_cast<std::size_t>(x) * counts.y + y) * counts.z + z;
 }
 
-SuperVoxels empty_cells(const Vec3i& brick_counts, int cell_size, std::size_t components) {
+Vec3i cell_counts(const Vec3i& voxel_counts, int cell_size) {
+  return (voxel_counts + Vec3i(cell_size - 1)) / cell_size;
+}
+
+std::size_t cell_count(const Vec3i& voxel_counts, int cell_size) {
+  const Vec3i counts = cell_counts(voxel_counts, cell_size);
+  return std::size_t(counts.x) * std::size_t(counts.y) * std::size_t(counts.z);
+}
+
+SuperVoxels empty_cells(const Vec3i& voxel_counts, int cell_size, std::size_t components) {
   SuperVoxels cells;
   cells.cell_size = cell_size;
   cells.components = static_cast<int>(components);
-  for (int axis = 0; axis < 3; ++axis) {
-    cells.counts[axis] = (brick_counts[axis] * BrickMap::kBrickSize + cell_size - 1) / cell_size;
-  }
-  const std::size_t total =
-      std::size_t(cells.counts.x) * std::size_t(cells.counts.y) * std::size_t(cells.counts.z);
+  cells.counts = cell_counts(voxel_counts, cell_size);
+  const std::size_t total = cell_count(voxel_counts, cell_size);
   cells.minima.resize(total * components);
   cells.maxima.resize(total * components);
   return cells;
 }
 
-SuperVoxels finest_cells(std::span<const BrickMap* const> densities, int cell_size) {
-  SuperVoxels cells = empty_cells(densities[0]->brick_counts(), cell_size, densities.size());
+/// Half-open box of the voxels that bound a component in a cell.
+struct VoxelBox {
+  Vec3i begin;
+  Vec3i end;
+};
+
+/// @param corner first place of the cell in the grid
+VoxelBox voxels_of_cell(const PlacedVoxels& density, const Vec3i& corner, int cell_size) {
+  constexpr double kRounding = 1e-6;  // of maps that are whole numbers of voxels
+  const Matrix4d& map = density.to_component;
+  const Vec3d place = Vec3d(corner) * map;
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = place[axis];
+    double high = place[axis];
+    for (int from = 0; from < 3; ++from) {
+      const double along = map[from][axis] * cell_size;
+      (along < 0 ? low : high) += along;
+    }
+    const double beyond = density.map->brick_counts()[axis] * BrickMap::kBrickSize + 1.0;
+    const auto inside = [&](double voxel) {
+      return static_cast<int>(std::clamp(voxel, -1.0, beyond));
+    };
+    box.begin[axis] = inside(std::floor(low + kRounding) - 1);
+    box.end[axis] = inside(std::ceil(high - kRounding) + 1);
+  }
+  return box;
+}
+
+SuperVoxels finest_cells(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts,
+                         int cell_size) {
+  SuperVoxels cells = empty_cells(voxel_counts, cell_size, densities.size());
+  std::vector<VoxelRanges> ranges;
+  ranges.reserve(densities.size());
+  for (const PlacedVoxels& density : densities) ranges.emplace_back(*density.map);
   tbb::parallel_for(tbb::blocked_range<int>(0, cells.counts.x), [&](const auto& slab) {
     for (int x = slab.begin(); x < slab.end(); ++x) {
       for (int y = 0; y < cells.counts.y; ++y) {
         for (int z = 0; z < cells.counts.z; ++z) {
-          const Vec3i corner = Vec3i(x, y, z) * cell_size;
-          const std::size_t cell = cell_index(cells.counts, x, y, z);
+          const std::size_t cell = cell_index(cells.counts, x, y, z) * densities.size();
           for (std::size_t k = 0; k < densities.size(); ++k) {
-            const Range range =
-                range_of_voxels(*densities[k], corner - Vec3i(1), corner + Vec3i(cell_size + 1));
-            cells.minima[cell * densities.size() + k] = range.minimum;
-            cells.maxima[cell * densities.size() + k] = range.maximum;
+            const VoxelBox box =
+                voxels_of_cell(densities[k], Vec3i(x, y, z) * cell_size, cell_size);
+            const ValueRange range = ranges[k].of_box(box.begin, box.end);
+            cells.minima[cell + k] = range.minimum;
+            cells.maxima[cell + k] = range.maximum;
           }
         }
       }
@@ -106,9 +96,9 @@ SuperVoxels finest_cells(std::span<const BrickMap* const> densities, int cell_si
 }
 
 /// Cells of twice the edge. The dilated voxels of a cell are the union of its children's.
-SuperVoxels coarser_cells(const SuperVoxels& fine, const Vec3i& brick_counts) {
+SuperVoxels coarser_cells(const SuperVoxels& fine, const Vec3i& voxel_counts) {
   const std::size_t components = fine.components;
-  SuperVoxels cells = empty_cells(brick_counts, fine.cell_size * 2, components);
+  SuperVoxels cells = empty_cells(voxel_counts, fine.cell_size * 2, components);
   std::fill(cells.minima.begin(), cells.minima.end(), std::numeric_limits<float>::infinity());
   std::fill(cells.maxima.begin(), cells.maxima.end(), -std::numeric_limits<float>::infinity());
   for (int x = 0; x < fine.counts.x; ++x) {
@@ -173,6 +163,7 @@ void fill_empty_radius(SuperVoxels& cells) {
           int32_t* first =
               radius.data() + a * strides[(axis + 1) % 3] + b * strides[(axis + 2) % 3];
           for (int i = 0; i < length; ++i) line[i] = first[i * stride];
+          if (*std::min_element(line.begin(), line.end()) == kFar) continue;
           // min over j of max(|i-j|, line[j]); lines are short and the search stops early.
           for (int i = 0; i < length; ++i) {
             int32_t best = line[i];
@@ -188,6 +179,34 @@ void fill_empty_radius(SuperVoxels& cells) {
       }
     });
   }
+}
+
+void check_size(int wanted) {
+  if (wanted == 0 || std::find(std::begin(kSuperVoxelSizes), std::end(kSuperVoxelSizes), wanted) !=
+                         std::end(kSuperVoxelSizes)) {
+    return;
+  }
+  fail("a super-voxel of {} voxels is not possible: choose 4, 8, 16, 32 or 64, or 0 for automatic",
+       wanted);
+}
+
+/// The size that the others are made from: 4 where it is asked for or makes few cells, else 8, or
+/// more where components with voxels of very different sizes would make too many of those.
+int finest_size(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts, int wanted) {
+  if (wanted == 4 || (wanted == 0 && cell_count(voxel_counts, 4) <= kFewCells)) return 4;
+  std::size_t most = kFewCells;  // or as many as the densities themselves have bricks
+  for (const PlacedVoxels& density : densities) most = std::max(most, density.map->index().size());
+  int size = 8;
+  while (size != wanted && cell_count(voxel_counts, size) > most) size *= 2;
+  return size;
+}
+
+void check_memory(std::size_t cells, std::size_t components, int size) {
+  if (cells * components <= kMaxNumbers) return;
+  fail(
+      "{} super-voxels of {} voxels are more than can be walked through: choose larger ones, or 0 "
+      "for automatic",
+      cells, size);
 }
 
 }  // namespace
@@ -213,20 +232,13 @@ SuperVoxelSummary summarize(const SuperVoxels& cells, int component) {
   return summary;
 }
 
-SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
+SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts,
                                std::span<const float> extinction, int cell_size,
                                const SuperVoxelCost& cost) {
-  if (cell_size != 0 && std::find(std::begin(kSuperVoxelSizes), std::end(kSuperVoxelSizes),
-                                  cell_size) == std::end(kSuperVoxelSizes)) {
-    fail(
-        "a super-voxel of {} voxels is not possible: choose 4, 8, 16, 32 or 64, or 0 for automatic",
-        cell_size);
-  }
-  const Vec3i brick_counts = densities[0]->brick_counts();
-  const std::size_t fine_cells =
-      8 * std::size_t(brick_counts.x) * std::size_t(brick_counts.y) * std::size_t(brick_counts.z);
-  const bool fine = cell_size == 4 || (cell_size == 0 && fine_cells <= kMaxFineCells);
-  SuperVoxels cells = finest_cells(densities, fine ? 4 : 8);
+  check_size(cell_size);
+  const int finest = finest_size(densities, voxel_counts, cell_size);
+  check_memory(cell_count(voxel_counts, finest), densities.size(), finest);
+  SuperVoxels cells = finest_cells(densities, voxel_counts, finest);
   std::optional<SuperVoxels> best;
   double best_cost = std::numeric_limits<double>::infinity();
   while (true) {
@@ -235,8 +247,8 @@ SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
       break;
     }
     const double this_cost = expected_cost(cells, extinction, cost);
-    const bool last = cells.cell_size == kSuperVoxelSizes[std::size(kSuperVoxelSizes) - 1];
-    SuperVoxels coarse = last ? SuperVoxels{} : coarser_cells(cells, brick_counts);
+    const bool last = cells.cell_size >= kSuperVoxelSizes[std::size(kSuperVoxelSizes) - 1];
+    SuperVoxels coarse = last ? SuperVoxels{} : coarser_cells(cells, voxel_counts);
     if (cell_size == 0 && (this_cost < best_cost || !best)) {
       best = std::move(cells);
       best_cost = this_cost;
@@ -246,6 +258,15 @@ SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
   }
   fill_empty_radius(*best);
   return std::move(*best);
+}
+
+SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
+                               std::span<const float> extinction, int cell_size,
+                               const SuperVoxelCost& cost) {
+  std::vector<PlacedVoxels> placed;
+  for (const BrickMap* map : densities) placed.push_back({map, Matrix4d()});
+  return build_super_voxels(placed, densities[0]->brick_counts() * BrickMap::kBrickSize, extinction,
+                            cell_size, cost);
 }
 
 }  // namespace freepath

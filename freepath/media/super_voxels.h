@@ -16,7 +16,8 @@ namespace freepath {
 /// just over a cell's face still reads voxels that the cell has counted.
 ///
 /// Cell (x,y,z) covers the voxels [cell_size·x, cell_size·(x+1)) counted from the first voxel of
-/// the brick map's index. Entries are stored x slowest: cell = (x · ny + y) · nz + z.
+/// the brick map's index, or of the WalkSpace where components have voxels of their own. Entries
+/// are stored x slowest: cell = (x · ny + y) · nz + z.
 struct SuperVoxels {
   int cell_size = 8;          ///< Edge of a cell [voxels].
   Vec3i counts{0};            ///< Cells along each axis.
@@ -51,15 +52,31 @@ struct SuperVoxelCost {
   double lookup = 2.5;  ///< Cost of a tentative collision and its look-up [relative].
 };
 
-/// Builds the super-voxels of densities that share one brick layout.
+/// A component's voxels, and where they stand in the grid that is cut into cells.
 ///
-/// @param densities the components' brick maps: same origin and brick counts
+/// The bounds of a cell are those of the voxels that the cell's own box of places covers, grown by
+/// one. A tap of the trilinear filter reads half a voxel less far: so much a place may be off.
+struct PlacedVoxels {
+  const BrickMap* map = nullptr;
+  Matrix4d to_component;  ///< Place in the grid → place in the map; see WalkSpace.
+};
+
+/// Builds the super-voxels of densities over a grid of voxels. A voxel beyond a map is 0.
+///
+/// @param densities the components
+/// @param voxel_counts extent of the grid
 /// @param extinction the largest extinction per unit of density of each component, per voxel edge
-///   [1/voxel]; only the choice of the size depends on it
+///   of the grid [1/voxel]; only the choice of the size depends on it
 /// @param cell_size one of kSuperVoxelSizes, or 0 to take the one with the least expected cost of
 ///   a unit of length: steps cost 1.5/cell_size, look-ups the mean majorant of the cells that are
-///   not empty
-/// @throws Error for another cell_size
+///   not empty. Where components have voxels of very different sizes it may be larger than any of
+///   those, so that the cells are not too many.
+/// @throws Error for another cell_size, or one that makes too many cells
+SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts,
+                               std::span<const float> extinction, int cell_size,
+                               const SuperVoxelCost& cost = {});
+
+/// The same for densities that share origin and brick counts, whose voxels are the grid.
 SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                std::span<const float> extinction, int cell_size,
                                const SuperVoxelCost& cost = {});

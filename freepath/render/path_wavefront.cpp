@@ -96,7 +96,7 @@ bool PathWavefront::trace_channel(const PathJob& job, int channel,
     if (stop && stop()) return false;
     rays_.resize(active);
     bring_weights(active);
-    walker_->free_paths(rays_, flights_, job_counts_.walk);
+    walker_->free_paths(rays_, flights_, job_counts_.free_paths);
 
     // Paths that go on close ranks; those that have ended owe nothing to the shadow rays.
     shadows_.clear();
@@ -300,7 +300,7 @@ void PathWavefront::finish(const Path& path, int channel) {
 void PathWavefront::trace_shadows() {
   if (shadows_.empty()) return;
   shadow_rays_.resize(shadows_.size());
-  walker_->transmittance(shadow_rays_, shadow_flights_, job_counts_.walk);
+  walker_->transmittance(shadow_rays_, shadow_flights_, job_counts_.shadow_rays);
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     Path& path = paths_in_flight_[shadows_[i].slot];
     path.radiance += shadows_[i].radiance *

@@ -57,14 +57,16 @@ class PathWavefront {
 
   /// Counts over all jobs that were finished.
   struct Counts {
-    WalkStatistics walk;
+    WalkStatistics free_paths;   ///< Of the tracker.
+    WalkStatistics shadow_rays;  ///< Of the transmittance estimator.
     uint64_t paths = 0;
     /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
     /// not to be trusted. Only rates that are no bound can do that.
     uint64_t overflows = 0;
 
     void merge(const Counts& other) {
-      walk.merge(other.walk);
+      free_paths.merge(other.free_paths);
+      shadow_rays.merge(other.shadow_rays);
       paths += other.paths;
       overflows += other.overflows;
     }

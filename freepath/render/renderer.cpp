@@ -186,7 +186,8 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
   }
-  RenderResult result{Film(camera.width(), camera.height()), {}};
+  RenderResult result{
+      .film = Film(camera.width(), camera.height()), .free_paths = {}, .shadow_rays = {}};
   const PathSetup setup = make_setup(medium, camera, lights, settings);
   PassRenderer passes(setup, settings, progress, result.film);
   passes.run();
@@ -199,7 +200,8 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   const PathWavefront::Counts counts = passes.counts();
   result.paths = counts.paths;
   result.overflows = counts.overflows;
-  result.statistics = counts.walk;
+  result.free_paths = counts.free_paths;
+  result.shadow_rays = counts.shadow_rays;
   const Film::NonFinite non_finite = result.film.non_finite_samples();
   if (non_finite.samples > 0) {
     const auto width = static_cast<std::size_t>(camera.width());

@@ -31,7 +31,8 @@ struct RenderProgress {
 /// A picture and how it came about.
 struct RenderResult {
   Film film;
-  WalkStatistics statistics;
+  WalkStatistics free_paths;   ///< What the tracker did.
+  WalkStatistics shadow_rays;  ///< What the transmittance estimator did.
   uint64_t paths = 0;
   /// Of the pixel with the fewest, and with the most: the same, unless a pass was broken off.
   uint32_t samples = 0, most_samples = 0;
@@ -40,6 +41,13 @@ struct RenderResult {
   uint64_t overflows = 0;
   double seconds = 0;
   bool interrupted = false;
+
+  /// Of both.
+  WalkStatistics statistics() const {
+    WalkStatistics sum = free_paths;
+    sum.merge(shadow_rays);
+    return sum;
+  }
 };
 
 /// Called now and then, by one thread at a time. False ends the rendering soon: a first pass if it

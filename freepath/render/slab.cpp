@@ -192,6 +192,8 @@ class SlabWavefront {
   WalkStatistics statistics_;
 };
 
+constexpr float kLargestBoundScale = 1000;
+
 void check_settings(const SlabSettings& settings) {
   if (!settings.diffuse && !(settings.mu0 > 0 && settings.mu0 <= 1)) {
     fail("mu0 is {}; the cosine of incidence lies in (0, 1], 1 being along the normal",
@@ -200,6 +202,10 @@ void check_settings(const SlabSettings& settings) {
   if (settings.paths < 1) fail("paths is 0; at least one path must be traced");
   if (settings.threads < 0) {
     fail("threads is {}; give a number from 1 on, or 0 for all", settings.threads);
+  }
+  if (!(settings.bound_scale >= 1 && settings.bound_scale <= kLargestBoundScale)) {
+    fail("the bounds can't be scaled by {}: from 1, tight, to {} is possible", settings.bound_scale,
+         kLargestBoundScale);
   }
 }
 
@@ -249,7 +255,8 @@ SlabSums trace_chunks(const SlabMedium& slab, const Walker& walker, const SlabSe
 SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& settings,
                       const SlabProgress& progress) {
   check_settings(settings);
-  const SlabMedium slab = make_slab_medium(layers, settings.super_voxel);
+  SlabMedium slab = make_slab_medium(layers, settings.super_voxel);
+  if (settings.bound_scale != 1) slab.medium = slab.medium.with_scaled_bounds(settings.bound_scale);
   WalkSettings walk = settings.walk;
   walk.interpolation = Interpolation::kNearest;
   std::string reason;
@@ -258,7 +265,9 @@ SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& set
     walk.tracker = std::move(choice.tracker);
     reason = std::move(choice.reason);
   }
-  const Walker walker(slab.medium, walk);
+  // Layers are grey: a tracker that would give each channel its own path needs one.
+  const Walker walker(slab.medium, walk,
+                      shares_paths(slab.medium, walk) ? Walker::kAllChannels : 0);
   const SlabSums sums = trace_chunks(slab, walker, settings, progress);
   if (!std::isfinite(sums.total.squares)) {
     fail(

@@ -27,6 +27,7 @@ struct SlabSettings {
   uint64_t paths = 1'000'000;
   int threads = 0;           ///< 0: as many as the machine has.
   int super_voxel = 0;       ///< Edge of a super-voxel [voxels], 0 for automatic.
+  float bound_scale = 1;     ///< Looseness of bounds, see Medium::with_scaled_bounds(); at least 1.
   std::size_t batch = 2048;  ///< Paths in flight per thread; the result does not depend on it.
   /// Russian roulette is played where the weight's magnitude is below this.
   float roulette_threshold = 0.25F;

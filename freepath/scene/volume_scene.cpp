@@ -8,12 +8,16 @@
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
+#include "freepath/media/walk_space.h"
 #include "freepath/render/sky.h"
 
 namespace freepath {
 namespace {
 
 void set_coefficients(const OpticalProperties& optics, Component& component) {
+  if (!std::isfinite(optics.density_scale) || optics.density_scale < 0) {
+    fail("the density scale is {}; it must be finite and not negative", optics.density_scale);
+  }
   if (optics.sigma_a || optics.sigma_s) {
     component.sigma_a = optics.sigma_a.value_or(Spectrum(0.0F));
     component.sigma_s = optics.sigma_s.value_or(Spectrum(0.0F));
@@ -31,12 +35,33 @@ void set_coefficients(const OpticalProperties& optics, Component& component) {
   component.sigma_s *= optics.density_scale;
 }
 
-/// Corners of the bricks that hold something, of each row along z only the first and the last: all
-/// that their convex hull needs [world].
-std::vector<Vec3d> occupied_corners(const Field& field) {
+/// The components that a volume contributes.
+void add_components(Volume volume, std::vector<Component>& components) {
+  const std::size_t densities = volume.densities.size();
+  if (densities != 1 && densities != kChannels) {
+    fail("a volume has one density, or three for R, G and B, not {}", densities);
+  }
+  for (std::size_t i = 0; i < densities; ++i) {
+    Component component;
+    component.density = std::make_shared<const Field>(std::move(volume.densities[i]));
+    component.g = volume.optics.g;
+    component.emission = volume.optics.emission;
+    set_coefficients(volume.optics, component);
+    if (densities > 1) {
+      Spectrum only(0.0F);
+      only[static_cast<int>(i)] = 1;
+      component.sigma_a *= only;
+      component.sigma_s *= only;
+    }
+    components.push_back(std::move(component));
+  }
+}
+
+/// Adds corners of the bricks that hold something, of each row along z only the first and the last:
+/// all that their convex hull needs [world].
+void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
   const BrickMap& map = field.voxels;
   const Vec3i& counts = map.brick_counts();
-  std::vector<Vec3d> corners;
   const auto add_brick = [&](int x, int y, int z) {
     const Vec3i first = map.origin() + Vec3i(x, y, z) * BrickMap::kBrickSize;
     for (int corner = 0; corner < 8; ++corner) {
@@ -61,7 +86,6 @@ std::vector<Vec3d> occupied_corners(const Field& field) {
       add_brick(x, y, static_cast<int>(row.rend() - last) - 1);
     }
   }
-  return corners;
 }
 
 /// Straight up or down no horizon tells what is up in the picture; then north is.
@@ -77,39 +101,60 @@ Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
 constexpr double kLargestOpticalDepth = 4e6;
 
 void check_optical_depth(const Medium& medium) {
-  const Component& component = medium.components()[0];
+  const std::vector<Component>& components = medium.components();
   const std::vector<float>& maxima = medium.super_voxels().maxima;
-  const double densest = *std::max_element(maxima.begin(), maxima.end());
-  const double depth =
-      densest * largest(component.sigma_t()) * medium.world_bounds().size().length();
+  const double length = medium.world_bounds().size().length();
+  double depth = 0;
+  double deepest = -1;
+  float densest = 0;
+  const Field* field = nullptr;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    float most = 0;
+    for (std::size_t i = k; i < maxima.size(); i += components.size()) {
+      most = std::max(most, maxima[i]);
+    }
+    const double part = double{most} * largest(components[k].sigma_t()) * length;
+    depth += part;
+    if (part <= deepest) continue;
+    deepest = part;
+    densest = most;
+    field = components[k].density.get();
+  }
   if (depth > kLargestOpticalDepth) {
     fail(
         "grid '{}': its largest density, {}, makes an optical depth of {:.3g} across the volume, "
         "more "
         "than {:.0e}: take a smaller --density-scale or smaller coefficients",
-        component.density->name, densest, depth, kLargestOpticalDepth);
+        field->name, densest, depth, kLargestOpticalDepth);
   }
 }
 
 }  // namespace
 
-Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel) {
-  if (!std::isfinite(optics.density_scale) || optics.density_scale < 0) {
-    fail("the density scale is {}; it must be finite and not negative", optics.density_scale);
+Medium make_medium(std::vector<Volume> volumes, int super_voxel) {
+  std::vector<Field*> fields;
+  for (Volume& volume : volumes) {
+    for (Field& field : volume.densities) fields.push_back(&field);
   }
-  Component component;
-  component.density = std::make_shared<const Field>(std::move(field));
-  component.g = optics.g;
-  component.emission = optics.emission;
-  set_coefficients(optics, component);
-  Medium medium({component}, super_voxel);
+  if (!fields.empty()) share_layout(fields);
+  std::vector<Component> components;
+  for (Volume& volume : volumes) add_components(std::move(volume), components);
+  if (components.size() > Medium::kMaxComponents) {
+    fail("the volumes have {} densities, more than {}: an RGB density counts as three",
+         components.size(), Medium::kMaxComponents);
+  }
+  Medium medium(std::move(components), super_voxel);
   check_optical_depth(medium);
   return medium;
 }
 
-Camera make_camera(const Field& field, const CameraOptions& options, UpAxis up) {
+Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up) {
   const double aspect = static_cast<double>(options.width) / options.height;
-  View view = frame_points(occupied_corners(field), up, options.fov, aspect);
+  std::vector<Vec3d> corners;
+  for (const Component& component : medium.components()) {
+    add_occupied_corners(*component.density, corners);
+  }
+  View view = frame_points(corners, up, options.fov, aspect);
   if (options.from) view.from = *options.from;
   if (options.at) view.at = *options.at;
   view.up = picture_up(view.at - view.from, up);

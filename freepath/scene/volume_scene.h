@@ -1,9 +1,10 @@
 #pragma once
-/// @file The scene around a bare volume: its medium, a camera that sees all of it, sun and sky.
+/// @file The scene around bare volumes: their medium, a camera that sees all of it, sun and sky.
 
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "freepath/io/volume.h"
 #include "freepath/media/medium.h"
@@ -20,6 +21,14 @@ struct OpticalProperties {
   std::optional<Spectrum> sigma_s;  ///< of the two the one that is not given is 0.
   float g = 0;
   Spectrum emission{0.0F};  ///< L_e
+};
+
+/// Densities with one set of optical properties.
+struct Volume {
+  /// One, which acts on all channels, or those of R, G and B, each of which acts on its channel
+  /// alone.
+  std::vector<Field> densities;
+  OpticalProperties optics;
 };
 
 /// The daylight sky.
@@ -42,13 +51,15 @@ struct CameraOptions {
   std::optional<Vec3d> at;    ///< [world]
 };
 
+/// The volumes' densities as components of one medium, in their order; they may overlap anyhow.
 /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
-/// @throws Error for coefficients out of range, and for albedo and coefficients given together
-Medium make_medium(Field field, const OpticalProperties& optics, int super_voxel);
+/// @throws Error for coefficients out of range, another number of densities in a volume than one or
+///   three, and as Medium
+Medium make_medium(std::vector<Volume> volumes, int super_voxel);
 
-/// @param field what to frame where the options name no position
+/// @param medium what to frame where the options name no position
 /// @throws Error as Camera and frame_points
-Camera make_camera(const Field& field, const CameraOptions& options, UpAxis up);
+Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up);
 
 /// @throws Error as Lights, its environments and the image reader
 Lights make_lights(const LightOptions& options, UpAxis up);

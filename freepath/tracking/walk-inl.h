@@ -85,9 +85,8 @@ class Walk {
     bool alive = false;
     for (int i = 0; i < kGroups / 2; ++i) {
       if (other[i].looking != 0) fetch(other[i]);
-      if (team[i].looking != 0) collide(team[i]);
-    }
-    for (Group& group : team) {
+      Group& group = team[i];
+      if (group.looking != 0) collide(group);
       dealer_.retire(group);
       alive |= group.alive != 0;
     }

@@ -10,6 +10,7 @@ namespace freepath {
 /// the ray's direction, whatever rounding does, so every walk ends.
 class GridSteps {
  public:
+  GridSteps() = default;
   /// @param origin,direction in units of cells; cell (i,j,k) covers [i,i+1) x [j,j+1) x [k,k+1)
   GridSteps(const Vec3d& origin, const Vec3d& direction, double begin, double end);
 
@@ -25,9 +26,9 @@ class GridSteps {
  private:
   Vec3d origin_, direction_;
   Vec3d inverse_;  ///< 1/direction, infinite where that is 0
-  double t_, end_;
+  double t_ = 0, end_ = 0;
   Vec3i cell_;
-  bool done_;
+  bool done_ = true;
 };
 
 }  // namespace freepath

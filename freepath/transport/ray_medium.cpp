@@ -89,18 +89,34 @@ RayMedium::Path RayMedium::enter(const Vec3d& origin, const Vec3d& direction, do
   return path;
 }
 
+RayMedium::Path RayMedium::path_in(int k, const Path& path) const {
+  if (view_.aligned) return path;
+  const AffineMap& map = component(k).walk_to_voxels;
+  Path result = path;
+  for (int to = 0; to < 3; ++to) {
+    result.origin[to] = map.offset[to];
+    result.direction[to] = 0;
+    for (int from = 0; from < 3; ++from) {
+      const double factor = double{map.linear[from][to]} / view_.cell_size;
+      result.origin[to] += path.origin[from] * factor;
+      result.direction[to] += path.direction[from] * factor;
+    }
+  }
+  return result;
+}
+
 double RayMedium::voxel(int k, const Vec3i& place) const {
   const ComponentView& component = view_.components[numbers_[k]];
-  const auto& counts = view_.brick_counts;
+  const auto& counts = component.brick_counts;
   const int entry = ((place.x >> 3) * counts[1] + (place.y >> 3)) * counts[2] + (place.z >> 3);
   const int within = (place.x & 7) << 6 | (place.y & 7) << 3 | (place.z & 7);
   return component
       .voxels[std::size_t{component.index[entry]} * BrickMap::kBrickVoxels + std::size_t(within)];
 }
 
-Vec3i RayMedium::inside(Vec3i voxel) const {
+Vec3i RayMedium::inside(int k, Vec3i voxel) const {
   for (int axis = 0; axis < 3; ++axis) {
-    const int last = view_.brick_counts[axis] * BrickMap::kBrickSize - 2;
+    const int last = component(k).brick_counts[axis] * BrickMap::kBrickSize - 2;
     voxel[axis] = std::clamp(voxel[axis], 0, last);
   }
   return voxel;
@@ -136,21 +152,25 @@ std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& pl
 }
 
 RayMedium::Densities RayMedium::densities(const Path& path, double t, RandomStream& random) const {
-  Vec3d place = path.origin + path.direction * t;
-  place -= Vec3d(centre_offset(view_.interpolation));
-  Vec3i base = inside(floor(place));
-  Vec3d fraction = place - Vec3d(base);
-  for (int axis = 0; axis < 3; ++axis) fraction[axis] = std::clamp(fraction[axis], 0.0, 1.0);
+  Vec3d uniform(0.0);
   if (view_.interpolation == Interpolation::kStochastic) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (random.uniform() < fraction[axis]) ++base[axis];
-    }
+    for (int axis = 0; axis < 3; ++axis) uniform[axis] = random.uniform();
   }
   Densities result{};
   for (int k = 0; k < component_count(); ++k) {
-    result[k] = view_.interpolation == Interpolation::kTrilinear
-                    ? std::max(0.0, cubic(k, base, fraction, Vec3d(0.0))[0])
-                    : voxel(k, base);
+    const Path own = path_in(k, path);
+    const Vec3d place = own.origin + own.direction * t - Vec3d(centre_offset(view_.interpolation));
+    Vec3i base = inside(k, floor(place));
+    Vec3d fraction = place - Vec3d(base);
+    for (int axis = 0; axis < 3; ++axis) fraction[axis] = std::clamp(fraction[axis], 0.0, 1.0);
+    if (view_.interpolation == Interpolation::kTrilinear) {
+      result[k] = std::max(0.0, cubic(k, base, fraction, Vec3d(0.0))[0]);
+      continue;
+    }
+    if (view_.interpolation == Interpolation::kStochastic) {
+      for (int axis = 0; axis < 3; ++axis) base[axis] += uniform[axis] < fraction[axis] ? 1 : 0;
+    }
+    result[k] = voxel(k, base);
   }
   return result;
 }
@@ -185,26 +205,44 @@ bool RayMedium::Segments::next(Segment& segment) {
 
 RayMedium::Cells::Cells(const RayMedium& medium, const Path& path, double begin, double end)
     : medium_(medium),
-      path_(path),
-      steps_(path.origin - Vec3d(centre_offset(medium.view_.interpolation)), path.direction, begin,
-             end) {}
+      begin_(begin),
+      end_(end),
+      track_count_(medium.view_.aligned ? std::min(1, medium.component_count())
+                                        : medium.component_count()) {
+  const Vec3d offset(centre_offset(medium.view_.interpolation));
+  for (int i = 0; i < track_count_; ++i) {
+    Track& track = tracks_[i];
+    track.path = medium.path_in(i, path);
+    track.steps = GridSteps(track.path.origin - offset, track.path.direction, begin, end);
+    track.base = track.steps.cell();
+    track.exit = track.steps.done() ? end : track.steps.leave(1);
+  }
+}
 
 bool RayMedium::Cells::next(Cell& cell) {
-  if (steps_.done()) return false;
-  const Vec3i base = medium_.inside(steps_.cell());
-  cell.begin = steps_.begin();
-  cell.end = steps_.leave(1);
-  if (medium_.view_.interpolation == Interpolation::kNearest) {
-    for (int k = 0; k < medium_.component_count(); ++k) {
-      cell.density[k][0] = medium_.voxel(k, base);
-    }
-    return true;
-  }
-  const Vec3d step = path_.direction * (cell.end - cell.begin);
-  Vec3d place = path_.origin + path_.direction * cell.begin - Vec3d(0.5) - Vec3d(base);
-  for (int axis = 0; axis < 3; ++axis) place[axis] = std::clamp(place[axis], 0.0, 1.0);
+  if (!(begin_ < end_)) return false;
+  cell.begin = begin_;
+  cell.end = end_;
+  for (int i = 0; i < track_count_; ++i) cell.end = std::min(cell.end, tracks_[i].exit);
+  const bool nearest = medium_.view_.interpolation == Interpolation::kNearest;
   for (int k = 0; k < medium_.component_count(); ++k) {
+    const Track& track = tracks_[track_count_ == 1 ? 0 : k];
+    const Vec3i base = medium_.inside(k, track.base);
+    if (nearest) {
+      cell.density[k][0] = medium_.voxel(k, base);
+      continue;
+    }
+    Vec3d place = track.path.origin + track.path.direction * cell.begin - Vec3d(0.5) - Vec3d(base);
+    for (int axis = 0; axis < 3; ++axis) place[axis] = std::clamp(place[axis], 0.0, 1.0);
+    const Vec3d step = track.path.direction * (cell.end - cell.begin);
     cell.density[k] = medium_.cubic(k, base, place, step);
+  }
+  begin_ = cell.end;
+  for (int i = 0; i < track_count_; ++i) {
+    Track& track = tracks_[i];
+    if (track.exit > begin_ || track.steps.done()) continue;
+    track.base = track.steps.cell();
+    track.exit = track.steps.leave(1);
   }
   return true;
 }

@@ -21,7 +21,7 @@ class RayMedium {
   /// The part of a ray inside the medium. It begins at the ray's origin or where it meets the
   /// bounds, so that a distant camera costs no precision inside.
   struct Path {
-    Vec3d origin;             ///< [voxels] from the corner of the index's first voxel
+    Vec3d origin;             ///< Place in the grid of voxels that walk space has; see WalkSpace.
     Vec3d direction;          ///< [voxels per world unit]
     double begin = 0;         ///< Where it enters the medium [world].
     double length = 0;        ///< From there to its end [world]; 0 if it misses.
@@ -37,7 +37,8 @@ class RayMedium {
     Densities maximum{};
   };
 
-  /// The part of a path in one voxel (nearest), or between eight voxel centres (trilinear).
+  /// The part of a path in one voxel (nearest), or between eight voxel centres (trilinear), of
+  /// every component.
   struct Cell {
     double begin = 0;
     double end = 0;
@@ -64,9 +65,19 @@ class RayMedium {
     bool next(Cell& cell);
 
    private:
+    /// The way through the voxels of a component, or of all where they are aligned.
+    struct Track {
+      Path path;  ///< In those voxels.
+      GridSteps steps;
+      Vec3i base;       ///< The present cell,
+      double exit = 0;  ///< and where the path leaves it.
+    };
+
     const RayMedium& medium_;
-    const Path& path_;
-    GridSteps steps_;
+    double begin_;
+    double end_;
+    int track_count_;
+    std::array<Track, Medium::kMaxComponents> tracks_;
   };
 
   /// @param channels 1, or kChannels
@@ -90,10 +101,12 @@ class RayMedium {
   Densities densities(const Path& path, double t, RandomStream& random) const;
 
  private:
+  /// A path as it passes through the voxels of a component.
+  Path path_in(int k, const Path& path) const;
   /// Value of a voxel, counted from the first of the index.
   double voxel(int k, const Vec3i& place) const;
-  /// The nearest voxel that has a next one along every axis within the index.
-  Vec3i inside(Vec3i voxel) const;
+  /// The nearest voxel that has a next one along every axis within the index of a component.
+  Vec3i inside(int k, Vec3i voxel) const;
   /// Density between the eight voxels from `base` on, along place + s · step, s in [0,1].
   std::array<double, 4> cubic(int k, const Vec3i& base, const Vec3d& place,
                               const Vec3d& step) const;

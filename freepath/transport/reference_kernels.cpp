@@ -115,6 +115,12 @@ void check_tight(const Medium& medium, int k, float density) {
 /// Homogeneous within its bounds, and not softened there.
 void check_closed_form(const Medium& medium, Interpolation interpolation) {
   check_voxels<ClosedForm>(medium, interpolation);
+  if (!medium.aligned()) {
+    fail(
+        "'closed-form' needs a homogeneous medium: grid '{}' and another differ in transform or "
+        "bounds; take 'regular', or a null-collision method",
+        medium.components()[0].density->name);
+  }
   Vec3i low = medium.components()[0].density->voxels.active_min();
   Vec3i high = medium.components()[0].density->voxels.active_max();
   for (const Component& component : medium.components()) {

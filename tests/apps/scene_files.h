@@ -21,6 +21,13 @@ inline Matrix4d eighths() { return Matrix4d().setScale(Vec3d(0.125)); }
 void write_cube(const std::string& file, const Density& density = ball,
                 const Matrix4d& index_to_world = eighths());
 
+/// Index space to a world that overlaps that of eighths(): larger voxels than a cube's, turned,
+/// mirrored and moved.
+inline Matrix4d turned() {
+  return Matrix4d().setScale(Vec3d(-0.15, 0.1, 0.12)) * Matrix4d().rotate(Vec3d(0.4, -0.7, 1)) *
+         Matrix4d().setTranslation(Vec3d(0.6, 0.3, -0.2));
+}
+
 /// Writes an image of 16x8 pixels of one value, with another one in a single pixel.
 void write_environment(const std::string& file, float value, float odd_value);
 

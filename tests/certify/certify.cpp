@@ -53,6 +53,8 @@ int run(const Options& options) {
                  check.estimate, check.standard_error, check.exact, check.z);
     }
   }
+  fmt::print("{} of {} radiances and transmittances count\n", verdict.principal_tested,
+             verdict.principal);
   fmt::print(
       "{} cases, {} comparisons, {} rare, {} heavy; |z| up to {:.2f} passes; {} cases fail\n",
       cases.size(), verdict.tested, verdict.rare, verdict.heavy, verdict.threshold,

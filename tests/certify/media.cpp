@@ -58,6 +58,17 @@ std::shared_ptr<Field> dense_noise(int seed = 0) {
   return crooked([seed](const Vec3i& p) { return 0.3F + 0.7F * hash_noise(p + Vec3i(50 * seed)); });
 }
 
+/// The same voxels elsewhere: turned further, smaller and moved, partly outside the others.
+std::shared_ptr<Field> turned_noise() {
+  Matrix4d matrix = crooked_transform();
+  matrix *= Matrix4d().setScale(Vec3d(0.6, 0.8, 0.7));
+  matrix *= Matrix4d().rotate(Vec3d(-0.7, 0.4, 1.1));
+  matrix *= Matrix4d().setTranslation(Vec3d(0.5, 0.2, -0.1));
+  auto field = dense_noise(3);
+  field->index_to_world = matrix;
+  return field;
+}
+
 /// A few voxels in a large box: most super-voxels are empty.
 std::shared_ptr<Field> sparse_field() {
   Matrix4d index_to_world;
@@ -172,6 +183,10 @@ void add_volumes(MediaList& list) {
             make_component(dense_noise(1), kBlueAbsorption, kBlueScattering, kNone),
             make_component(lumpy_field(2), Spectrum(0.1F), kNone, Spectrum(2.0F))},
            through_crooked(2));
+  list.add("two transforms",
+           {make_component(lumpy_field(0), kRedAbsorption, kRedScattering),
+            make_component(turned_noise(), kBlueAbsorption, kBlueScattering)},
+           through_crooked(0));
   list.add("RGB density",
            {make_component(lumpy_field(0), Spectrum(0.5F, 0, 0), Spectrum(1.5F, 0, 0)),
             make_component(lumpy_field(1), Spectrum(0, 0.5F, 0), Spectrum(0, 1.5F, 0)),

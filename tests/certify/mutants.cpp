@@ -41,8 +41,8 @@ struct Planted : Method {
 
   template <int N>
   HWY_INLINE void plant(const Collision<N>& before, MaskF lanes, Collision<N>& c) const {
-    const VecF factor = hn::IfThenElse(
-        c.scatter, set(scattering), hn::IfThenElse(c.absorb, set(absorption), set(null)));
+    const VecF factor = hn::IfThenElse(c.scatter, set(scattering),
+                                       hn::IfThenElse(c.absorb, set(absorption), set(null)));
     for (int channel = 0; channel < N; ++channel) {
       assign(c.weight[channel], lanes, hn::Mul(c.weight[channel], factor));
       const VecF added = hn::Sub(c.emitted[channel], before.emitted[channel]);
@@ -69,8 +69,7 @@ namespace freepath::testing {
 
 Mutant::Options Mutant::options(const PlantedFactors& planted) const {
   Options options{};
-  const Method method =
-      parse_method(name, free_paths ? tracker_infos() : transmittance_infos());
+  const Method method = parse_method(name, free_paths ? tracker_infos() : transmittance_infos());
   std::copy(method.options.begin(), method.options.end(), options.begin());
   options[kMaxMethodOptions] = planted.absorption;
   options[kMaxMethodOptions + 1] = planted.scattering;

@@ -60,8 +60,8 @@ ChannelStatistics walk(const Mutant& mutant, const PlantedFactors& planted, uint
         view_of(fixture(), Interpolation::kNearest, mutant.channels == 1 ? turn : -1);
     for (uint64_t done = 0; done < paths; done += kBatch) {
       const std::size_t count = std::min<uint64_t>(kBatch, paths - done);
-      RayStream rays = repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, count,
-                                  static_cast<uint32_t>(done));
+      RayStream rays =
+          repeat_ray(Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10.0F, count, static_cast<uint32_t>(done));
       std::fill(rays.pixel.begin(), rays.pixel.end(), pixel);
       flights.resize(count);
       mutant.walk(view, options, modes, 20170501, rays, flights, counts);
@@ -118,13 +118,11 @@ TEST_P(CertifyMutant, OnePercentInAWeightIsNoticed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, CertifyMutant, ::testing::ValuesIn(mutants()), [](const auto& test) {
-      std::string name = (test.param.free_paths ? "" : "transmittance_") +
-                         std::string(test.param.name);
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(All, CertifyMutant, ::testing::ValuesIn(mutants()), [](const auto& test) {
+  std::string name = (test.param.free_paths ? "" : "transmittance_") + std::string(test.param.name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 /// A reference method in a homogeneous medium whose extinction is `scale` times too large.
 RunningStatistics walk_reference(const std::string& method, bool free_paths, float scale,

@@ -33,6 +33,8 @@ Verdict judge(const std::vector<CaseResult>& results, double level) {
   for (const CaseResult& result : results) {
     for (const Check& check : result.checks) {
       if (check.standing == Standing::kTested) ++verdict.tested;
+      if (check.principal) ++verdict.principal;
+      if (check.principal && check.standing == Standing::kTested) ++verdict.principal_tested;
       if (check.standing == Standing::kRare) ++verdict.rare;
       if (check.standing == Standing::kHeavy) ++verdict.heavy;
     }
@@ -58,9 +60,11 @@ void write_report(const std::filesystem::path& path, const std::string& title,
       "Written by `scripts/certify`, freepath {}. {} cases, {} comparisons that count, {:.3g} "
       "paths. The family-wise level is {}, so a comparison passes up to |z| = {:.2f}; **{} cases "
       "fail**. {} comparisons are of events too rare for a mean to be normal, {} of weights spread "
-      "too widely; they are shown by what else their case compares, and not counted.\n\n",
+      "too widely: they do not count ([testing](testing.md)). Of {} radiances and transmittances "
+      "{} count.\n\n",
       version(), results.size(), verdict.tested, static_cast<double>(paths), kCertifyLevel,
-      verdict.threshold, verdict.failed.size(), verdict.rare, verdict.heavy);
+      verdict.threshold, verdict.failed.size(), verdict.rare, verdict.heavy, verdict.principal,
+      verdict.principal_tested);
   out.print(
       "Estimate and exact value are of the first channel: collected radiance of trackers, "
       "transmittance of estimators. z is the largest of the case's comparisons (radiance and "

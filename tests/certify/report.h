@@ -13,7 +13,9 @@ struct Verdict {
   std::size_t tested = 0;  ///< Comparisons that count.
   std::size_t rare = 0;
   std::size_t heavy = 0;
-  double threshold = 0;  ///< Largest |z| that passes, for the family-wise level.
+  std::size_t principal = 0;         ///< Radiances of trackers, transmittances of estimators.
+  std::size_t principal_tested = 0;  ///< Those of them that count.
+  double threshold = 0;              ///< Largest |z| that passes, for the family-wise level.
   std::vector<const CaseResult*> failed;
 };
 

@@ -53,7 +53,7 @@ TEST(VolumeErrors, TheFormatIsToldByContentNotByName) {
   EXPECT_NO_THROW(load_field(folder / "open.nvdb"));
 }
 
-TEST(VolumeErrors, LevelSetsPointsVectorsFrustumsAndEmptyGrids) {
+TEST(VolumeErrors, LevelSetsPointsFrustumsAndEmptyGrids) {
   const TemporaryFolder folder;
   TestGrid level_set = sample_grid();
   level_set.level_set = true;
@@ -64,19 +64,13 @@ TEST(VolumeErrors, LevelSetsPointsVectorsFrustumsAndEmptyGrids) {
   write_vdb_points(folder / "points.vdb");
   expect_contains(error_of([&] { load_field(folder / "points.vdb"); }),
                   {"grid \"particles\"", "points"});
-  write_vdb_vectors(folder / "vectors.vdb");
-  expect_contains(error_of([&] { load_field(folder / "vectors.vdb"); }),
-                  {"grid \"velocity\"", "vec3s"});
-  write_nvdb_vectors(folder / "vectors.nvdb");
-  expect_contains(error_of([&] { load_field(folder / "vectors.nvdb"); }),
-                  {"grid \"velocity\"", "vec3f"});
   write_vdb_frustum(folder / "frustum.vdb");
   expect_contains(error_of([&] { load_field(folder / "frustum.vdb"); }),
                   {"grid \"density\"", "frustum"});
   for (const std::string& message : messages_for(TestGrid{})) {
     expect_contains(message, {"grid \"density\"", "no active voxels"});
   }
-  for (const char* name : {"points.vdb", "vectors.vdb", "vectors.nvdb", "frustum.vdb"}) {
+  for (const char* name : {"points.vdb", "frustum.vdb"}) {
     const auto grids = list_grids(folder / name);
     ASSERT_EQ(grids.size(), 1U) << name;
     EXPECT_FALSE(grids[0].loadable) << name;

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <type_traits>
 
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
@@ -13,11 +14,28 @@
 namespace freepath::testing_volumes {
 namespace {
 
+/// The value of a grid where three make a vector, or itself.
+template <class Value>
+Value value_of_channels(const std::array<double, 3>& channels) {
+  if constexpr (std::is_arithmetic_v<Value>) {
+    return static_cast<Value>(channels[0]);
+  } else {
+    using Real = typename Value::ValueType;
+    return Value(static_cast<Real>(channels[0]), static_cast<Real>(channels[1]),
+                 static_cast<Real>(channels[2]));
+  }
+}
+
+/// A grid of reals made of one, or of vectors made of three with the same voxels and tiles.
 template <class Grid>
-typename Grid::Ptr openvdb_grid(const TestGrid& grid) {
+typename Grid::Ptr openvdb_grid(const TestGrid& grid, const TestGrid* y = nullptr,
+                                const TestGrid* z = nullptr) {
   using Value = typename Grid::ValueType;
   openvdb::initialize();
-  auto made = Grid::create(static_cast<Value>(grid.background));
+  const TestGrid& second = y != nullptr ? *y : grid;
+  const TestGrid& third = z != nullptr ? *z : grid;
+  auto made = Grid::create(
+      value_of_channels<Value>({grid.background, second.background, third.background}));
   made->setName(grid.name);
   made->setGridClass(grid.level_set ? openvdb::GRID_LEVEL_SET : openvdb::GRID_FOG_VOLUME);
   openvdb::Mat4d matrix;
@@ -27,15 +45,19 @@ typename Grid::Ptr openvdb_grid(const TestGrid& grid) {
     }
   }
   made->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
-  for (const TestTile& tile : grid.tiles) {
+  for (std::size_t i = 0; i < grid.tiles.size(); ++i) {
+    const TestTile& tile = grid.tiles[i];
     const openvdb::Index level = tile.size == 8 ? 1 : tile.size == 128 ? 2 : 3;
-    made->tree().addTile(level, openvdb::Coord(tile.origin.x, tile.origin.y, tile.origin.z),
-                         static_cast<Value>(tile.value), true);
+    made->tree().addTile(
+        level, openvdb::Coord(tile.origin.x, tile.origin.y, tile.origin.z),
+        value_of_channels<Value>({tile.value, second.tiles[i].value, third.tiles[i].value}), true);
   }
   auto accessor = made->getAccessor();
-  for (const Voxel& voxel : grid.voxels) {
-    accessor.setValueOn(openvdb::Coord(voxel.place.x, voxel.place.y, voxel.place.z),
-                        static_cast<Value>(voxel.value));
+  for (std::size_t i = 0; i < grid.voxels.size(); ++i) {
+    const Voxel& voxel = grid.voxels[i];
+    accessor.setValueOn(
+        openvdb::Coord(voxel.place.x, voxel.place.y, voxel.place.z),
+        value_of_channels<Value>({voxel.value, second.voxels[i].value, third.voxels[i].value}));
   }
   return made;
 }
@@ -75,14 +97,6 @@ nanovdb::io::Codec nanovdb_codec(Codec codec) {
   return codec == Codec::kZip     ? nanovdb::io::Codec::ZIP
          : codec == Codec::kBlosc ? nanovdb::io::Codec::BLOSC
                                   : nanovdb::io::Codec::NONE;
-}
-
-openvdb::Vec3SGrid::Ptr vector_grid() {
-  openvdb::initialize();
-  auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3s(0));
-  grid->setName("velocity");
-  grid->tree().setValueOn(openvdb::Coord(1, 2, 3), openvdb::Vec3s(1, 2, 3));
-  return grid;
 }
 
 }  // namespace
@@ -165,8 +179,17 @@ void write_vdb_file(const std::filesystem::path& path, const std::vector<TestGri
   write_openvdb(path, made, codec);
 }
 
-void write_vdb_vectors(const std::filesystem::path& path) {
-  write_openvdb(path, {vector_grid()}, Codec::kBlosc);
+void write_vdb_vectors(const std::filesystem::path& path, const std::array<TestGrid, 3>& channels,
+                       VectorValues values, Codec codec) {
+  const auto& [x, y, z] = channels;
+  openvdb::GridBase::Ptr grid;
+  if (values == VectorValues::kDouble) {
+    grid = openvdb_grid<openvdb::Vec3DGrid>(x, &y, &z);
+  } else {
+    grid = openvdb_grid<openvdb::Vec3SGrid>(x, &y, &z);
+  }
+  grid->setSaveFloatAsHalf(values == VectorValues::kHalf);
+  write_openvdb(path, {grid}, codec);
 }
 
 void write_vdb_points(const std::filesystem::path& path) {
@@ -195,10 +218,12 @@ void write_nvdb_file(const std::filesystem::path& path, const std::vector<TestGr
   nanovdb::io::writeGrids(path.string(), handles, nanovdb_codec(codec));
 }
 
-void write_nvdb_vectors(const std::filesystem::path& path) {
+void write_nvdb_vectors(const std::filesystem::path& path, const std::array<TestGrid, 3>& channels,
+                        Codec codec) {
+  const auto& [x, y, z] = channels;
   std::vector<nanovdb::GridHandle<>> handles;
-  handles.push_back(nanovdb::openToNanoVDB(*vector_grid()));
-  nanovdb::io::writeGrids(path.string(), handles);
+  handles.push_back(nanovdb::openToNanoVDB(*openvdb_grid<openvdb::Vec3SGrid>(x, &y, &z)));
+  nanovdb::io::writeGrids(path.string(), handles, nanovdb_codec(codec));
 }
 
 }  // namespace freepath::testing_volumes

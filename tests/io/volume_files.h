@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -70,8 +71,16 @@ double value_of(const TestGrid& grid, const Vec3i& voxel);
 void write_vdb_file(const std::filesystem::path& path, const std::vector<TestGrid>& grids,
                     VdbValues values = VdbValues::kFloat, Codec codec = Codec::kBlosc);
 
+enum class VectorValues { kFloat, kHalf, kDouble };
+
+/// A grid of vectors whose x, y and z are the values of three grids, which have the same voxels and
+/// tiles; name, background and the rest are the first one's.
+void write_vdb_vectors(const std::filesystem::path& path, const std::array<TestGrid, 3>& channels,
+                       VectorValues values = VectorValues::kFloat, Codec codec = Codec::kBlosc);
+void write_nvdb_vectors(const std::filesystem::path& path, const std::array<TestGrid, 3>& channels,
+                        Codec codec = Codec::kNone);
+
 /// Grids no density can be read from.
-void write_vdb_vectors(const std::filesystem::path& path);
 void write_vdb_points(const std::filesystem::path& path);
 void write_vdb_frustum(const std::filesystem::path& path);
 
@@ -79,6 +88,5 @@ enum class NvdbValues { kFloat, kDouble, kFp4, kFp8, kFp16, kFpN };
 
 void write_nvdb_file(const std::filesystem::path& path, const std::vector<TestGrid>& grids,
                      NvdbValues values = NvdbValues::kFloat, Codec codec = Codec::kNone);
-void write_nvdb_vectors(const std::filesystem::path& path);
 
 }  // namespace freepath::testing_volumes

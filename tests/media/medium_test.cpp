@@ -106,16 +106,27 @@ TEST(Medium, RefusesFieldsWithoutVoxels) {
             "component 1: its density has no active voxel");
 }
 
-TEST(Medium, RefusesFieldsThatDifferInTransformOrBounds) {
+TEST(Medium, IsAlignedWhereFieldsShareTransformAndBricks) {
   const auto turned = make_field(Vec3i(0), Vec3i(5), hash_noise, crooked_transform());
   const auto larger = make_field(Vec3i(0), Vec3i(50), hash_noise);
   for (const auto& other : {turned, larger}) {
-    EXPECT_EQ(complaint({plain(), component_of(other)}),
-              "grids 'test' and 'test' differ in transform or bounds; components must share them");
+    EXPECT_FALSE(Medium({plain(), component_of(other)}).aligned());
+    EXPECT_TRUE(Medium({component_of(other), component_of(other)}).aligned());
   }
   // Active voxels may differ where the bricks are the same.
-  EXPECT_EQ(complaint({plain(), component_of(make_field(Vec3i(1), Vec3i(4), hash_noise))}),
-            complaint({plain(), plain()}));
+  EXPECT_TRUE(
+      Medium({plain(), component_of(make_field(Vec3i(1), Vec3i(4), hash_noise))}).aligned());
+}
+
+TEST(Medium, RefusesOneMapFromTheWorldForFieldsThatDiffer) {
+  const Component larger = component_of(make_field(Vec3i(0), Vec3i(50), hash_noise));
+  try {
+    const Medium medium({plain(), larger}, 4, Matrix4d());
+    FAIL() << "was accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "fields that differ in transform or bounds can't be given one map from the world");
+  }
 }
 
 TEST(Medium, RefusesATransformWithoutInverseUnlessGivenOne) {

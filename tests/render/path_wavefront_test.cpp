@@ -47,9 +47,10 @@ constexpr PathJob kJob{.first_pixel = 16, .pixels = 64, .first_sample = 0, .samp
 void expect_same(const PathWavefront::Counts& a, const PathWavefront::Counts& b) {
   EXPECT_EQ(a.paths, b.paths);
   EXPECT_EQ(a.overflows, b.overflows);
-  EXPECT_EQ(a.walk.rays, b.walk.rays);
-  EXPECT_EQ(a.walk.lookups, b.walk.lookups);
-  EXPECT_EQ(a.walk.real_collisions, b.walk.real_collisions);
+  EXPECT_EQ(a.free_paths.rays, b.free_paths.rays);
+  EXPECT_EQ(a.free_paths.lookups, b.free_paths.lookups);
+  EXPECT_EQ(a.shadow_rays.lookups, b.shadow_rays.lookups);
+  EXPECT_EQ(a.free_paths.real_collisions, b.free_paths.real_collisions);
 }
 
 TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {

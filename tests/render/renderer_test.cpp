@@ -120,7 +120,7 @@ void expect_furnace(const Component& component, int samples) {
     EXPECT_TRUE(check_mean(test.tracker, mean.mean, mean.error, result.paths, 1.0,
                            {.z = threshold, .absolute = 1e-5, .largest_relative_error = 1e-3}));
     EXPECT_EQ(result.overflows, 0U);
-    EXPECT_EQ(result.statistics.bound_violations, 0U);
+    EXPECT_EQ(result.statistics().bound_violations, 0U);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -146,6 +147,31 @@ TEST(SlabPublished, AnswersDoNotDependOnTheMethod) {
   check(half_space_problem(kHalfSpaces[3], 1), 24,
         [](SlabSettings& s) { s.walk.absorption = Absorption::kAnalog; });
 }
+
+// Every tracker of the registry, under loose bounds, so that it meets null collisions.
+class SlabTracker : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SlabTracker, ReproducesThePublishedNumbers) {
+  SlabSettings settings = settings_of(kMcmlTable, 41);
+  settings.walk.tracker = GetParam();
+  if (GetParam() != "closed-form") settings.bound_scale = 2;  // which refuses loose ones
+  EXPECT_TRUE(check_problem(kMcmlTable, settings));
+}
+
+std::vector<std::string> unbiased_trackers() {
+  std::vector<std::string> names;
+  for (const MethodInfo& info : tracker_infos()) {
+    if (!info.biased) names.emplace_back(info.name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SlabTracker, ::testing::ValuesIn(unbiased_trackers()),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 // Below a rate scale of 1 the variance is finite only where there is little scattering
 // (docs/slab.md).

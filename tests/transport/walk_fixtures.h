@@ -22,16 +22,20 @@ inline Matrix4d crooked_transform() {
 }
 
 /// 24³ voxels in bricks of noise, holes and tiles; a seed gives another field in the same bricks.
-inline std::shared_ptr<Field> lumpy_field(int seed = 0) {
+/// @param padding grows the layout of bricks, and nothing else, by so many voxels on one side
+inline std::shared_ptr<Field> lumpy_field(int seed = 0,
+                                          const Matrix4d& index_to_world = crooked_transform(),
+                                          int padding = 0) {
   return make_field(
-      Vec3i(-12), Vec3i(11),
+      Vec3i(-12 - padding), Vec3i(11),
       [seed](const Vec3i& p) {
+        if (p.x < -12 || p.y < -12 || p.z < -12) return 0.0F;
         const float lump = hash_noise(Vec3i(p.x >> 3, p.y >> 3, p.z >> 3) + Vec3i(9 * seed));
         if (lump < 0.2F) return 0.0F;
         if (lump < 0.4F) return 2 * lump;
         return 0.05F + hash_noise(p + Vec3i(100 * seed)) * lump;
       },
-      crooked_transform());
+      index_to_world);
 }
 
 /// A part of a line in the world.
@@ -80,28 +84,31 @@ struct RayIntegrals {
   }
 };
 
-/// By the midpoint rule, for a medium with grey extinction.
+/// By the midpoint rule, for the extinction of one channel.
 inline RayIntegrals integrate(const Medium& medium, const TestRay& ray, Interpolation interpolation,
-                              int steps = 60000) {
+                              int steps = 60000, int channel = 0) {
   const std::vector<Component>& components = medium.components();
-  const Matrix4d world_to_index = components[0].density->index_to_world.inverse();
+  std::vector<Matrix4d> world_to_index;
+  for (const Component& component : components) {
+    world_to_index.push_back(component.density->index_to_world.inverse());
+  }
   RayIntegrals result;
   result.step = double(ray.t_max) / steps;
   result.depth.assign(1, 0.0);
   result.collided.assign(components.size(), 0.0);
   std::vector<double> densities(components.size());
   for (int i = 0; i < steps; ++i) {
-    const Vec3d point =
-        (Vec3d(ray.origin) + Vec3d(ray.direction) * ((i + 0.5) * result.step)) * world_to_index;
+    const Vec3d world = Vec3d(ray.origin) + Vec3d(ray.direction) * ((i + 0.5) * result.step);
     double sigma_t = 0;
     for (std::size_t k = 0; k < components.size(); ++k) {
+      const Vec3d point = world * world_to_index[k];
       const BrickMap& voxels = components[k].density->voxels;
       densities[k] = interpolation == Interpolation::kNearest
                          ? voxels.value(Vec3i(static_cast<int>(std::floor(point.x + 0.5)),
                                               static_cast<int>(std::floor(point.y + 0.5)),
                                               static_cast<int>(std::floor(point.z + 0.5))))
                          : voxels.interpolate(point);
-      sigma_t += densities[k] * components[k].sigma_t().x;
+      sigma_t += densities[k] * components[k].sigma_t()[channel];
     }
     const double before = result.depth.back();
     result.depth.push_back(before + sigma_t * result.step);

@@ -1,0 +1,130 @@
+#include "apps/freepath/render_volumes.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "apps/freepath/parse.h"
+#include "freepath/base/error.h"
+
+namespace freepath::program {
+namespace {
+
+constexpr std::array kNegatives{Choice<NegativePolicy>{"error", NegativePolicy::kError},
+                                Choice<NegativePolicy>{"clamp", NegativePolicy::kClamp}};
+
+/// The value for a volume, null where none is given.
+template <class Value>
+const Value* value_for(std::size_t volume, std::size_t volumes, const std::vector<Value>& values,
+                       std::string_view option) {
+  if (values.empty()) return nullptr;
+  if (values.size() == 1) return values.data();
+  if (values.size() == volumes) return &values[volume];
+  fail("{}: it is given {} times for {} {}; give it once, or once for each volume in their order",
+       option, values.size(), volumes, volumes == 1 ? "volume" : "volumes");
+}
+
+OpticalProperties read_optics(const VolumeOptions& options, std::size_t volume) {
+  const std::size_t volumes = options.files.size();
+  OpticalProperties optics;
+  const auto number = [&](const std::vector<double>& values, const char* option, float& target) {
+    const double* const value = value_for(volume, volumes, values, option);
+    if (value != nullptr) target = static_cast<float>(*value);
+  };
+  const auto spectrum = [&](const std::vector<std::string>& values, const char* option,
+                            auto& target) {
+    const std::string* const value = value_for(volume, volumes, values, option);
+    if (value != nullptr) target = parse_spectrum(*value, option);
+  };
+  if (!options.albedo.empty() && (!options.sigma_a.empty() || !options.sigma_s.empty())) {
+    fail("--albedo and --sigma-a or --sigma-s say the same thing twice; give one or the other");
+  }
+  number(options.density_scale, "--density-scale", optics.density_scale);
+  number(options.g, "--g", optics.g);
+  spectrum(options.albedo, "--albedo", optics.albedo);
+  spectrum(options.sigma_a, "--sigma-a", optics.sigma_a);
+  spectrum(options.sigma_s, "--sigma-s", optics.sigma_s);
+  spectrum(options.radiance, "--le", optics.emission);
+  return optics;
+}
+
+/// "density", or three names for R, G and B.
+std::vector<LoadOptions> read_grids(const std::string& text, NegativePolicy negative) {
+  std::vector<LoadOptions> grids;
+  std::string_view rest = text;
+  for (bool last = false; !last;) {
+    const std::size_t comma = rest.find(',');
+    last = comma == std::string_view::npos;
+    grids.push_back(
+        {.selection = parse_grid_selection(rest.substr(0, comma)), .negative = negative});
+    if (!last) rest.remove_prefix(comma + 1);
+  }
+  if (grids.size() == 1) return grids;
+  for (LoadOptions& grid : grids) {
+    grid.scalar_only = true;
+    const bool named = grid.selection.name || grid.selection.index;
+    if (grids.size() == kChannels && named) continue;
+    fail("--grid: '{}' is neither one grid nor three for the densities of R,G,B", text);
+  }
+  return grids;
+}
+
+}  // namespace
+
+std::vector<VolumePlan> plan_volumes(const VolumeOptions& options) {
+  const NegativePolicy negative = parse_choice(options.negative, "--negative", kNegatives);
+  std::vector<VolumePlan> plans;
+  for (std::size_t volume = 0; volume < options.files.size(); ++volume) {
+    const std::string* const grid =
+        value_for(volume, options.files.size(), options.grids, "--grid");
+    plans.push_back({options.files[volume],
+                     read_grids(grid != nullptr ? *grid : std::string(), negative),
+                     read_optics(options, volume)});
+  }
+  return plans;
+}
+
+std::vector<Volume> load_volumes(const std::vector<VolumePlan>& plans,
+                                 std::vector<VolumeReport>& report) {
+  std::vector<Volume> volumes;
+  for (const VolumePlan& plan : plans) {
+    Volume volume{.densities = {}, .optics = plan.optics};
+    report.push_back({plan.file, {}});
+    for (const LoadOptions& grid : plan.grids) {
+      for (LoadedField& loaded : load_fields(plan.file, grid)) {
+        for (const std::string& warning : loaded.warnings) {
+          fmt::print(stderr, "freepath: warning: {}\n", warning);
+        }
+        report.back().grids.push_back(loaded.field.name);
+        volume.densities.push_back(std::move(loaded.field));
+      }
+    }
+    volumes.push_back(std::move(volume));
+  }
+  return volumes;
+}
+
+void add_volume_options(CLI::App& command, VolumeOptions& o) {
+  const auto add = [&](const char* name, auto& values, const char* text) {
+    return command.add_option(name, values, text)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Medium (once for all volumes, or once for each)");
+  };
+  add("--grid", o.grids,
+      "Grid to render, by name or number [density]; three, separated by commas, are the densities "
+      "of R, G and B, as are the channels of a grid of vectors");
+  add("--density-scale", o.density_scale, "Multiplies the densities [1]")->check(kFiniteNumber);
+  add("--albedo", o.albedo, "Single-scattering albedo, V or R,G,B [0.99]");
+  add("--sigma-a", o.sigma_a, "Absorption per unit of density, V or R,G,B [1/unit]");
+  add("--sigma-s", o.sigma_s, "Scattering per unit of density, V or R,G,B [1/unit]");
+  add("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function [0]")->check(kFiniteNumber);
+  add("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e [0]");
+  command.add_option("--negative", o.negative, "Negative densities: error or clamp")
+      ->capture_default_str()
+      ->group("Medium");
+}
+
+}  // namespace freepath::program

@@ -1,0 +1,173 @@
+#include "freepath/media/walk_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+/// Lanes count voxels in floats (small_to_int in base/lanes-inl.h), and interpolate between them.
+constexpr int kMostVoxels = 1 << 23;
+/// Where a place passes through another grid's, rounding may move it by half a voxel, as far as the
+/// bounds of super-voxels are dilated; see PlacedVoxels.
+constexpr int kMostVoxelsApart = 1 << 20;
+
+bool have_one_layout(const Field& a, const Field& b) {
+  return a.index_to_world == b.index_to_world && a.voxels.origin() == b.voxels.origin() &&
+         a.voxels.brick_counts() == b.voxels.brick_counts();
+}
+
+double voxel_volume(const Field& field) { return std::abs(field.index_to_world.determinant()); }
+
+Matrix4d translation(const Vec3d& by) { return Matrix4d().setTranslation(by); }
+
+Matrix4d linear_part(Matrix4d matrix) {
+  for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = 0;
+  return matrix;
+}
+
+/// Index space → place, counted from a voxel.
+Matrix4d to_place(const Vec3i& origin) { return translation(Vec3d(0.5) - Vec3d(origin)); }
+
+/// Index space of one field → that of another. The fields' distance from the world's origin is
+/// taken out before anything is rounded.
+Matrix4d index_to_index(const Matrix4d& from, const Matrix4d& to) {
+  const Vec3d apart = from.translation() - to.translation();
+  return linear_part(from) * translation(apart) * linear_part(to).inverse();
+}
+
+/// Bounds of a field's active voxels, each of which reaches that far [index].
+Box3d active_box(const Field& field, double reach) {
+  return {Vec3d(field.voxels.active_min()) - Vec3d(reach),
+          Vec3d(field.voxels.active_max()) + Vec3d(reach)};
+}
+
+Vec3d corner_of(const Box3d& box, int corner) {
+  return {(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+          (corner & 4) != 0 ? box.max.z : box.min.z};
+}
+
+Box3d transformed(const Box3d& box, const Matrix4d& matrix) {
+  Box3d result;
+  for (int corner = 0; corner < 8; ++corner) result.extendBy(corner_of(box, corner) * matrix);
+  return result;
+}
+
+void check_lengths(std::span<const Field* const> fields) {
+  for (const Field* field : fields) {
+    const Vec3i& bricks = field->voxels.brick_counts();
+    if (std::max({bricks.x, bricks.y, bricks.z}) > kMostVoxels / BrickMap::kBrickSize) {
+      fail(
+          "grid '{}' is more than {} voxels long: positions along it exceed the precision of "
+          "floats",
+          field->name, kMostVoxels);
+    }
+  }
+}
+
+void check_inverse(const Field& field) {
+  const double determinant = field.index_to_world.determinant();
+  if (!std::isfinite(determinant) || determinant == 0) {
+    fail("grid '{}': its transform has no inverse", field.name);
+  }
+}
+
+/// Fails if the grid over all fields is longer than places can be told apart, in voxels of its own
+/// or of a component.
+void check_extent(const Box3d& bounds, const WalkSpace& space, std::span<const Field* const> fields,
+                  const Field& finest) {
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const Matrix4d map = index_to_index(space.index_to_world, fields[k]->index_to_world);
+    const Vec3d size = transformed(bounds, map).size();
+    const Vec3d own = bounds.size();
+    const double longest = std::max({size.x, size.y, size.z, own.x, own.y, own.z});
+    if (longest <= kMostVoxelsApart) continue;
+    const Field& other = fields[k] == &finest ? *fields[k == 0 ? 1 : 0] : *fields[k];
+    fail(
+        "grids '{}' and '{}' lie too far apart, or differ too much in the size of their voxels: "
+        "the "
+        "box around both is {:.3g} voxels long, more than {}; move them together, or resample the "
+        "finer one",
+        finest.name, other.name, longest, kMostVoxelsApart);
+  }
+}
+
+/// The grid over fields that differ in transform or layout.
+WalkSpace common_space(std::span<const Field* const> fields) {
+  for (const Field* field : fields) check_inverse(*field);
+  const Field& finest = **std::min_element(
+      fields.begin(), fields.end(),
+      [](const Field* a, const Field* b) { return voxel_volume(*a) < voxel_volume(*b); });
+  WalkSpace space;
+  space.aligned = false;
+  space.index_to_world = finest.index_to_world;
+  Box3d bounds;
+  for (const Field* field : fields) {
+    bounds.extendBy(transformed(active_box(*field, 1),
+                                index_to_index(field->index_to_world, space.index_to_world)));
+  }
+  check_extent(bounds, space, fields, finest);
+  constexpr double kRounding = 1e-3;  // of bounds that are whole voxels; one is to spare
+  for (int axis = 0; axis < 3; ++axis) {
+    space.origin[axis] = static_cast<int>(std::floor(bounds.min[axis] + kRounding)) - 1;
+    const int last = static_cast<int>(std::ceil(bounds.max[axis] - kRounding)) + 1;
+    space.voxel_counts[axis] = last - space.origin[axis] + 1;
+  }
+  for (const Field* field : fields) {
+    space.to_component.push_back(to_place(space.origin).inverse() *
+                                 index_to_index(space.index_to_world, field->index_to_world) *
+                                 to_place(field->voxels.origin()));
+  }
+  return space;
+}
+
+}  // namespace
+
+Box3d WalkSpace::bounds(std::span<const Field* const> fields, double reach) const {
+  Box3d box;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const Vec3i& first = fields[k]->voxels.origin();
+    const Box3d places = transformed(active_box(*fields[k], reach), to_place(first));
+    box.extendBy(aligned ? places : transformed(places, to_component[k].inverse()));
+  }
+  return box;
+}
+
+void share_layout(std::span<Field* const> fields) {
+  Vec3i first = fields[0]->voxels.origin();
+  Vec3i last = first;
+  double entries = 0;
+  for (const Field* field : fields) {
+    if (field->function || field->index_to_world != fields[0]->index_to_world) return;
+    const BrickMap& map = field->voxels;
+    entries += static_cast<double>(map.index().size());
+    for (int axis = 0; axis < 3; ++axis) {
+      const int end = map.origin()[axis] + map.brick_counts()[axis] * BrickMap::kBrickSize;
+      first[axis] = std::min(first[axis], map.origin()[axis]);
+      last[axis] = std::max(last[axis], end);
+    }
+  }
+  const Vec3d extent = (Vec3d(last) - Vec3d(first)) / BrickMap::kBrickSize;
+  constexpr double kMostEmpty = 8;  // entries for each that there is now
+  if (extent.x * extent.y * extent.z > kMostEmpty * entries) return;
+  for (Field* field : fields) field->voxels.widen_index(first, Vec3i(extent));
+}
+
+WalkSpace make_walk_space(std::span<const Field* const> fields) {
+  check_lengths(fields);
+  const Field& first = *fields[0];
+  if (!std::all_of(fields.begin(), fields.end(),
+                   [&](const Field* field) { return have_one_layout(*field, first); })) {
+    return common_space(fields);
+  }
+  WalkSpace space;
+  space.index_to_world = first.index_to_world;
+  space.origin = first.voxels.origin();
+  space.voxel_counts = first.voxels.brick_counts() * BrickMap::kBrickSize;
+  space.to_component.assign(fields.size(), Matrix4d());
+  return space;
+}
+
+}  // namespace freepath

@@ -1,0 +1,42 @@
+#pragma once
+/// @file The space that a medium's walks take place in, common to components whose voxels stand
+/// anyhow in the world.
+
+#include <span>
+#include <vector>
+
+#include "freepath/base/vector.h"
+#include "freepath/media/field.h"
+
+namespace freepath {
+
+/// A grid of voxels over all components. A *place* counts voxels from the first of a grid: voxel i
+/// covers the places from i to i + 1 along each axis, and its centre is at i + 1/2.
+struct WalkSpace {
+  /// Whether all components have one transform and one layout of bricks, bit for bit, which is then
+  /// the grid: one place serves all.
+  bool aligned = true;
+  Matrix4d index_to_world;  ///< Of the grid.
+  Vec3i origin{0};          ///< Its first voxel [index].
+  Vec3i voxel_counts{0};    ///< Along each axis.
+  /// Place in the grid → place in the voxels of each component; the identity where aligned.
+  /// Composed in double precision without the way to the world's origin and back.
+  std::vector<Matrix4d> to_component;
+
+  /// What the voxels' active bounds cover [place in the grid].
+  /// @param reach how far a voxel reaches from its centre [voxels]
+  Box3d bounds(std::span<const Field* const> fields, double reach) const;
+};
+
+/// Gives fields that share one transform one layout of bricks as well, which makes walks through
+/// them faster; leaves them as they are where their transforms differ, or where they lie so far
+/// apart that the index would hold little but nothing.
+void share_layout(std::span<Field* const> fields);
+
+/// The layout of the fields where they share one; else the index axes of the finest of them, over
+/// all that the trilinear filter can reach.
+/// @throws Error naming the grid: transforms that have no inverse where that is needed; fields so
+///   far apart, or so long, that single precision cannot tell their voxels from each other
+WalkSpace make_walk_space(std::span<const Field* const> fields);
+
+}  // namespace freepath
