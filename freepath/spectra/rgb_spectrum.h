@@ -1,0 +1,63 @@
+#pragma once
+/// @file Spectra that have a given colour.
+
+#include <array>
+#include <optional>
+
+#include "freepath/base/vector.h"
+#include "freepath/spectra/linear_spectrum.h"
+#include "freepath/spectra/rgb_color_space.h"
+
+namespace freepath {
+
+/// A smooth spectrum between 0 and 1: S(c0 u² + c1 u + c2), where S(x) = 1/2 + x / (2 sqrt(1 +
+/// x²)), and u goes from -1 to 1 over the rendered wavelengths [Jakob19].
+struct SigmoidPolynomial {
+  std::array<double, 3> c = {};  ///< c2 may be infinite, if the others are 0.
+
+  /// @param wavelength [nm]
+  double operator()(double wavelength) const;
+};
+
+/// The smooth reflectance whose colour is RGB under the illuminant of the space, by Gauss-Newton
+/// steps [Jakob19] with Levenberg and Marquardt's damping. Equal components give a constant
+/// spectrum exactly; other colours of sRGB come back within 0.0002. Bright saturated colours of
+/// wider gamuts, which no reflectance can have, give one whose RGB is near.
+/// @throws Error unless all components are in [0, 1]
+SigmoidPolynomial fit_reflectance(const Vec3d& rgb, const RgbColorSpace& space);
+
+/// A spectrum made of a colour: scale · S · illuminant.
+class RgbSpectrum {
+ public:
+  /// A reflectance or an albedo: values in [0, 1].
+  /// @throws Error unless all components are in [0, 1]
+  static RgbSpectrum reflectance(const Vec3d& rgb, const RgbColorSpace& space);
+
+  /// Any coefficient without an upper bound: 2 m S, where S has the colour rgb / (2 m) and m is the
+  /// largest component, so that S stays where it is smoothest.
+  /// @throws Error unless all components are finite and not negative
+  static RgbSpectrum unbounded(const Vec3d& rgb, const RgbColorSpace& space);
+
+  /// Emitted light: `unbounded` times the illuminant of the space. The observer sees it as rgb.
+  /// @throws Error unless all components are finite and not negative
+  static RgbSpectrum illuminant(const Vec3d& rgb, const RgbColorSpace& space);
+
+  /// @param wavelength [nm]
+  double operator()(double wavelength) const {
+    const double value = scale_ * polynomial_(wavelength);
+    return illuminant_ ? value * (*illuminant_)(wavelength) : value;
+  }
+
+  const SigmoidPolynomial& polynomial() const { return polynomial_; }
+  double scale() const { return scale_; }
+
+ private:
+  RgbSpectrum(const SigmoidPolynomial& polynomial, double scale)
+      : polynomial_(polynomial), scale_(scale) {}
+
+  SigmoidPolynomial polynomial_;
+  double scale_;
+  std::optional<LinearSpectrum> illuminant_;
+};
+
+}  // namespace freepath

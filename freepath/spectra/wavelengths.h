@@ -1,0 +1,61 @@
+#pragma once
+/// @file Random wavelengths for a path, and the colour of what it carries.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "freepath/base/vector.h"
+#include "freepath/spectra/cie_observer.h"
+
+namespace freepath {
+
+/// How a wavelength is drawn.
+enum class WavelengthDensity {
+  kUniform,
+  kVisible,  ///< In proportion to sech²(0.0072 (λ - 538 nm)) [Radziszewski09].
+};
+
+/// Probability per nanometre of drawing a wavelength [1/nm]; its integral over the rendered
+/// wavelengths is 1, and it is 0 outside.
+double wavelength_pdf(double wavelength, WavelengthDensity density);
+
+/// The wavelength below which the fraction u in [0, 1) of the probability lies [nm].
+double sample_wavelength(double u, WavelengthDensity density);
+
+/// The wavelengths that a path carries.
+template <std::size_t kCount>
+struct Wavelengths {
+  std::array<double, kCount> lambda;  ///< [nm]; the first is the hero.
+  std::array<double, kCount> pdf;     ///< Of each alone [1/nm].
+};
+
+/// A hero wavelength drawn by u, and the others at equal distances of probability from it, going
+/// round at the end [Wilkie14]. Each alone has the density's distribution, and together
+/// they stratify it.
+/// @param u [0, 1)
+template <std::size_t kCount>
+Wavelengths<kCount> sample_wavelengths(double u, WavelengthDensity density) {
+  Wavelengths<kCount> result;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    double rotated = u + static_cast<double>(i) / static_cast<double>(kCount);
+    if (rotated >= 1) rotated -= 1;
+    result.lambda[i] = sample_wavelength(rotated, density);
+    result.pdf[i] = wavelength_pdf(result.lambda[i], density);
+  }
+  return result;
+}
+
+/// X, Y, Z of the radiance that a path carries at its wavelengths, with Y = 1 for a radiance of 1
+/// at all wavelengths. Unbiased if the radiances are, for wavelengths from sample_wavelengths.
+template <std::size_t kCount>
+Vec3d estimate_xyz(const std::array<double, kCount>& radiance,
+                   const Wavelengths<kCount>& wavelengths) {
+  Vec3d sum(0);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    sum += color_matching(wavelengths.lambda[i]) * (radiance[i] / wavelengths.pdf[i]);
+  }
+  return sum / (static_cast<double>(kCount) * kLuminousIntegral);
+}
+
+}  // namespace freepath
