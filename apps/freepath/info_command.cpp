@@ -124,6 +124,7 @@ struct SuperVoxelFacts {
 
 SuperVoxelFacts super_voxel_facts(const std::vector<LoadedField>& fields) {
   std::vector<const BrickMap*> maps;
+  maps.reserve(fields.size());
   for (const LoadedField& loaded : fields) maps.push_back(&loaded.field.voxels);
   const auto edge_length = std::cbrt(std::abs(fields[0].field.index_to_world.determinant()));
   const std::vector<float> extinction(fields.size(), static_cast<float>(edge_length));

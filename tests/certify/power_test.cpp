@@ -159,8 +159,7 @@ TEST(CertifyPower, OnePercentOfTheExtinctionIsNoticedByReferenceMethods) {
       {"closed-form", false}, {"p-series", false},   {"unbiased-ray-marching", false}};
   for (const auto& method : methods) {
     const auto z = [&](float scale) {
-      const RunningStatistics found =
-          walk_reference(method.first, method.second, scale, 1'200'000);
+      const RunningStatistics found = walk_reference(method.first, method.second, scale, 1'200'000);
       const double apart = std::abs(found.mean() - expected);
       return apart < 1e-6 ? 0 : apart / found.standard_error();
     };
