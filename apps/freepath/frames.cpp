@@ -96,11 +96,12 @@ std::string frame_prefix(const FrameName& name, int frame) {
 void check_readable(const std::string& file, const std::string& prefix) {
   std::error_code error;
   if (!fs::exists(file, error)) {
-    fail("{}{} does not exist; check the name, or leave the frame out of --frames", prefix, file);
+    fail("{}{}: does not exist; check the name, or leave the frame out of --frames", prefix, file);
   }
-  if (!fs::is_regular_file(file, error)) fail("{}{} is not a file", prefix, file);
+  if (!fs::is_regular_file(file, error))
+    fail("{}{}: is not a file; give the name of a volume file", prefix, file);
   if (access(file.c_str(), R_OK) != 0) {
-    fail("{}{} can't be read; check its permissions", prefix, file);
+    fail("{}{}: can't be read; check its permissions", prefix, file);
   }
 }
 
@@ -247,15 +248,17 @@ std::vector<PictureFiles> plan_pictures(const std::string& frames, const Picture
   const auto has_place = [](const FrameName& name) { return name.has_place(); };
   if (numbers.size() > 1) {
     if (std::none_of(volumes.begin(), volumes.end(), has_place)) {
-      fail("--frames {}: no volume has a place for the number of a frame, so that all pictures "
-           "would be the same; write one, as in smoke.%04d.vdb",
-           frames);
+      fail(
+          "--frames {}: no volume has a place for the number of a frame, so that all pictures "
+          "would be the same; write one, as in smoke.%04d.vdb",
+          frames);
     }
     const auto refuse_overwriting = [&](const FrameName& name, const std::string& typed) {
       if (name.has_place() || typed.empty()) return;
-      fail("{}: frames would overwrite each other; give the name a place for their number, as in "
-           "picture.%04d.exr",
-           typed);
+      fail(
+          "{}: frames would overwrite each other; give the name a place for their number, as in "
+          "picture.%04d.exr",
+          typed);
     };
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       refuse_overwriting(outputs[i], names.outputs[i]);

@@ -51,7 +51,7 @@ Examples:
   freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio
   freepath render smoke.vdb fire.vdb -o both.exr --albedo 0.6 --albedo 0.2 --le 0 --le 9,3,0.5
   freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral
-  freepath render 'smoke.%04d.vdb' --frames 1-48 -o 'picture.%04d.exr' --spp 64)";
+  freepath render smoke.%04d.vdb --frames 1-48 -o picture.%04d.exr --spp 64)";
 
 constexpr std::array kInterpolations{
     Choice<Interpolation>{"nearest", Interpolation::kNearest},

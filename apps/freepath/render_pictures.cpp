@@ -63,11 +63,11 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   report.threads = plan.settings.threads;
   report.frame = files.frame;
   const ProgressBar bar(std::size_t(camera.width()) * camera.height(), plan.settings.time_limit);
-  RenderResult result = render(medium, camera, plan.lights, report.settings,
-                               [&](const RenderProgress& progress) {
-                                 bar.show(progress);
-                                 return !stop.requested();
-                               });
+  RenderResult result =
+      render(medium, camera, plan.lights, report.settings, [&](const RenderProgress& progress) {
+        bar.show(progress);
+        return !stop.requested();
+      });
   bar.finish();
   check_not_empty(result);
   report.seconds_render = result.seconds;
@@ -85,8 +85,7 @@ void print_frame(std::size_t index, std::size_t count, const PictureFiles& files
     written += output;
   }
   fmt::print(stderr, "frame {} ({} of {}): {}{} samples per pixel in {}, wrote {}\n", *files.frame,
-             index + 1, count, result.interrupted ? "interrupted after " : "",
-             samples_text(result),
+             index + 1, count, result.interrupted ? "interrupted after " : "", samples_text(result),
              clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
              written);
   print_warnings(result);
@@ -120,8 +119,7 @@ void render_picture(const RenderPlan& plan, const PictureFiles& files) {
   const std::string tracker = settle_tracker(plan.settings.walk.tracker, medium);
   report.seconds_build += watch.lap();
   const StopOnInterrupt stop;
-  const RenderResult result =
-      render_and_write(plan, files, medium, camera, tracker, stop, report);
+  const RenderResult result = render_and_write(plan, files, medium, camera, tracker, stop, report);
   print_summary(files.outputs, result, report);
 }
 

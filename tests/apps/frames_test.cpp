@@ -1,5 +1,5 @@
-// freepath render --frames: names, numbers, what is checked before the first frame, and the pictures
-// of a sequence.
+// freepath render --frames: names, numbers, what is checked before the first frame, and the
+// pictures of a sequence.
 
 #include "apps/freepath/frames.h"
 
@@ -34,9 +34,27 @@ TEST(Frames, RangesStepsAndListsAreNumbersInTheirOrder) {
 }
 
 TEST(Frames, WhatIsNoneIsNamed) {
-  for (const char* text : {"", "a", "-1", "1-", "1--2", "1-2-3", "1,", ",1", "1 2", "1-2x", "1-2x0",
-                           "1x2", "1-9x-1", "1.5", "+1", "1000000000", "99999999999999999999",
-                           "4-1", "1,1", "1-5,3", "0-999999999"}) {
+  for (const char* text : {"",
+                           "a",
+                           "-1",
+                           "1-",
+                           "1--2",
+                           "1-2-3",
+                           "1,",
+                           ",1",
+                           "1 2",
+                           "1-2x",
+                           "1-2x0",
+                           "1x2",
+                           "1-9x-1",
+                           "1.5",
+                           "+1",
+                           "1000000000",
+                           "99999999999999999999",
+                           "4-1",
+                           "1,1",
+                           "1-5,3",
+                           "0-999999999"}) {
     try {
       frames(text);
       ADD_FAILURE() << text;
@@ -116,9 +134,7 @@ class FramesTest : public ProgramTest {
     EXPECT_EQ(files(), before);
   }
 
-  std::vector<float> values(const std::string& name) const {
-    return read_image(path(name)).values;
-  }
+  std::vector<float> values(const std::string& name) const { return read_image(path(name)).values; }
 };
 
 constexpr const char* kSequence = "smoke.%04d.vdb -o p.%d.exr ";
@@ -242,8 +258,8 @@ TEST_F(FramesTest, CtrlCWritesTheFrameAndSaysWhichAreDone) {
   EXPECT_NE(outcome.messages.find("--frames 1 are done; to render the others, give --frames 2-3"),
             std::string::npos)
       << outcome;
-  EXPECT_EQ(files(), (Names{"p.1.exr", "p.2.exr", "smoke.0001.vdb", "smoke.0002.vdb",
-                            "smoke.0003.vdb"}));
+  EXPECT_EQ(files(),
+            (Names{"p.1.exr", "p.2.exr", "smoke.0001.vdb", "smoke.0002.vdb", "smoke.0003.vdb"}));
 }
 
 }  // namespace
