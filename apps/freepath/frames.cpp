@@ -149,9 +149,7 @@ void check_no_sequence(const PictureFiles& names) {
 }
 
 std::vector<FrameName> frame_names(const std::vector<std::string>& names) {
-  std::vector<FrameName> result;
-  for (const std::string& name : names) result.emplace_back(name);
-  return result;
+  return {names.begin(), names.end()};
 }
 
 }  // namespace
