@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/frames.h"
 #include "apps/freepath/parse.h"
-#include "apps/freepath/progress_bar.h"
-#include "apps/freepath/render_output.h"
+#include "apps/freepath/render_pictures.h"
 #include "apps/freepath/render_volumes.h"
 #include "freepath/base/error.h"
 #include "freepath/scene/volume_scene.h"
@@ -33,6 +33,12 @@ are given once for all volumes, or once for each in the order of the files. Thre
 of vectors, are the densities of R, G and B. All trackers walk through such media but closed-form,
 which needs one homogeneous density.
 
+With --frames, volumes whose names have a place for the number of a frame change from frame to frame,
+and the others stay; every picture and --stats need a place where there are several frames. %d is the
+number, %04d or #### has at least four digits, %% is a percent sign. The camera is framed once, from
+the first frame, unless --look-at places it; --seed is the same for all frames; --time is that of each
+frame. Ctrl-C writes the frame under way and ends the sequence.
+
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
 Methods take options after their name: weighted-delta:rate-scale=0.7
 
@@ -44,7 +50,8 @@ Examples:
   freepath render cloud.vdb -o furnace.exr --albedo 1 --environment 1 --stats stats.json
   freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio
   freepath render smoke.vdb fire.vdb -o both.exr --albedo 0.6 --albedo 0.2 --le 0 --le 9,3,0.5
-  freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral)";
+  freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral
+  freepath render smoke.%04d.vdb --frames 1-48 -o picture.%04d.exr --spp 64)";
 
 constexpr std::array kInterpolations{
     Choice<Interpolation>{"nearest", Interpolation::kNearest},
@@ -57,7 +64,7 @@ constexpr std::array kUpAxes{Choice<UpAxis>{"y", UpAxis::kY}, Choice<UpAxis>{"z"
 /// The options as they were typed; read_* turn them into what the library takes.
 struct Options {
   VolumeOptions volumes;
-  std::string stats;
+  std::string stats, frames;
   std::vector<std::string> outputs;
   uint32_t samples = 0;
   double time_limit = 0;
@@ -179,61 +186,26 @@ RenderSettings read_settings(const Options& options) {
   return settings;
 }
 
-/// Refuses to write a picture of nothing, perhaps over one of something.
-void check_not_empty(const RenderResult& result) {
-  if (result.most_samples > 0) return;
-  fail("{} after {:.1f} s, before any pixel had a sample: nothing is written; {}",
-       result.interrupted ? "interrupted" : "the time was up", result.seconds,
-       result.interrupted ? "wait longer, or choose a smaller --size"
-                          : "give more --time, or choose a smaller --size or a thinner volume");
-}
-
-/// The tracker to walk with, after saying what users must know of it.
-std::string settle_tracker(const std::string& tracker, const Medium& medium) {
-  if (tracker == kAutoTracker) {
-    const TrackerChoice choice = choose_tracker(medium);
-    fmt::print(stderr, "auto: {}, since {}\n", choice.tracker, choice.reason);
-    return choice.tracker;
-  }
-  warn_if_biased(tracker);
-  return tracker;
-}
-
 void run(const Options& options) {
   // All that can be wrong with the options is said before the first second of work.
-  for (const std::string& output : options.outputs) check_writable(output);
-  check_statistics_file(options.stats, options.outputs, options.volumes.files);
-  RenderSettings settings = read_settings(options);
-  const std::vector<VolumePlan> plans = read_volumes(options);
-  const LightOptions light_options = read_lights(options);
-  const CameraOptions camera_options = read_camera(options);
+  const std::vector<PictureFiles> pictures =
+      plan_pictures(options.frames, {.frame = {},
+                                     .volumes = options.volumes.files,
+                                     .outputs = options.outputs,
+                                     .stats = options.stats});
   const UpAxis up = parse_choice(options.up, "--up", kUpAxes);
-  const Lights lights = make_lights(light_options, up);
-
-  RenderReport report;
-  Stopwatch watch;
-  std::vector<Volume> volumes = load_volumes(plans, report.volumes);
-  report.seconds_load = watch.lap();
-  const Medium medium = make_medium(std::move(volumes), options.super_voxel);
-  const Camera camera = make_camera(medium, camera_options, up);
-  settings.walk.tracker = settle_tracker(settings.walk.tracker, medium);
-  report.seconds_build = watch.lap();
-
-  const ProgressBar bar(std::size_t(camera.width()) * camera.height(), settings.time_limit);
-  const StopOnInterrupt stop;
-  const RenderResult result =
-      render(medium, camera, lights, settings, [&](const RenderProgress& progress) {
-        bar.show(progress);
-        return !stop.requested();
-      });
-  bar.finish();
-  check_not_empty(result);
-  report.seconds_render = result.seconds;
-  report.settings = settings;
-  report.threads = settings.threads;
-  write_outputs(options.outputs, options.exposure, result, report);
-  if (!options.stats.empty()) write_statistics(options.stats, result, report);
-  print_summary(options.outputs, result, report);
+  const RenderPlan plan{.settings = read_settings(options),
+                        .volumes = read_volumes(options),
+                        .camera = read_camera(options),
+                        .up = up,
+                        .lights = make_lights(read_lights(options), up),
+                        .super_voxel = options.super_voxel,
+                        .exposure = options.exposure};
+  if (options.frames.empty()) {
+    render_picture(plan, pictures.front());
+  } else {
+    render_frames(plan, pictures);
+  }
 }
 
 void add_picture_options(CLI::App& command, Options& o) {
@@ -259,6 +231,11 @@ void add_picture_options(CLI::App& command, Options& o) {
       ->check(kFiniteNumber)
       ->group("Picture");
   command.add_option("--stats", o.stats, "Write statistics to a JSON file")->group("Picture");
+  command
+      .add_option("--frames", o.frames,
+                  "Frames of a sequence: 1-48, 1-48x2 for every second one, 7, or 1,5,9-12; their "
+                  "number takes the place of %d, %04d or #### in the names of files")
+      ->group("Picture");
   command
       .add_option("--look-at", o.look_at,
                   "Camera position, and perhaps its target: X,Y,Z[,ATX,ATY,ATZ]; by default all "

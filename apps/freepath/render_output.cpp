@@ -83,6 +83,7 @@ void add_metadata(Image& image, const RenderResult& result, const RenderReport& 
       {"freepath:negative_weights", integer(counts.negative_weights)},
       {"freepath:largest_weight", static_cast<double>(counts.largest_weight)},
   };
+  if (report.frame) image.metadata.emplace_back("freepath:frame", int64_t{*report.frame});
 }
 
 nlohmann::json counts_json(const WalkStatistics& counts) {
@@ -119,6 +120,7 @@ nlohmann::json statistics_json(const RenderResult& result, const RenderReport& r
                {"threads", thread_count(report)},
                {"simd", to_string(report.settings.walk.simd)},
                {"version", version()}});
+  if (report.frame) json["frame"] = *report.frame;
   return json;
 }
 
@@ -198,20 +200,7 @@ void write_statistics(const std::string& file, const RenderResult& result,
   }
 }
 
-void print_summary(const std::vector<std::string>& files, const RenderResult& result,
-                   const RenderReport& report) {
-  std::string samples = fmt::format("{}", result.samples);
-  if (result.most_samples > result.samples) samples += fmt::format(" to {}", result.most_samples);
-  if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", samples);
-  fmt::print(
-      stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
-      samples, clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
-      report.seconds_load, report.seconds_build, report.seconds_render);
-  fmt::print(stderr, "{} paths, {:.2f} lookups each\n", result.paths,
-             static_cast<double>(result.statistics().lookups) /
-                 static_cast<double>(std::max<uint64_t>(result.paths, 1)));
-  print_counts(report.settings.walk.tracker, "flight", result.free_paths);
-  print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
+void print_warnings(const RenderResult& result) {
   if (result.overflows > 0) {
     fmt::print(stderr,
                "freepath: warning: the weights of {} paths left the range of float and count as 0; "
@@ -226,6 +215,27 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
         result.pixels_without_samples,
         static_cast<std::size_t>(result.film.width()) * result.film.height());
   }
+}
+
+std::string samples_text(const RenderResult& result) {
+  if (result.most_samples == result.samples) return fmt::format("{}", result.samples);
+  return fmt::format("{} to {}", result.samples, result.most_samples);
+}
+
+void print_summary(const std::vector<std::string>& files, const RenderResult& result,
+                   const RenderReport& report) {
+  const std::string samples = samples_text(result);
+  if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", samples);
+  fmt::print(
+      stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
+      samples, clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
+      report.seconds_load, report.seconds_build, report.seconds_render);
+  fmt::print(stderr, "{} paths, {:.2f} lookups each\n", result.paths,
+             static_cast<double>(result.statistics().lookups) /
+                 static_cast<double>(std::max<uint64_t>(result.paths, 1)));
+  print_counts(report.settings.walk.tracker, "flight", result.free_paths);
+  print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
+  print_warnings(result);
   for (const std::string& file : files) fmt::print(stderr, "wrote {}\n", file);
 }
 

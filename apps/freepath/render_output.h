@@ -2,6 +2,7 @@
 /// @file What a rendering leaves behind: pictures with metadata, statistics, a summary.
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct RenderReport {
   double seconds_load = 0, seconds_build = 0, seconds_render = 0;
   std::vector<VolumeReport> volumes;
   RenderSettings settings;
-  int threads = 0;  ///< 0: all
+  int threads = 0;           ///< 0: all
+  std::optional<int> frame;  ///< Where the picture belongs to a sequence.
 };
 
 /// Writes the picture under each name, .exr with metadata.
@@ -53,6 +55,12 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
 /// @throws Error that names the file
 void write_statistics(const std::string& file, const RenderResult& result,
                       const RenderReport& report);
+
+/// Tells on standard error what makes a picture less than it should be.
+void print_warnings(const RenderResult& result);
+
+/// "64", or "0 to 1" where pixels differ: samples per pixel.
+std::string samples_text(const RenderResult& result);
 
 /// Tells on standard error what was done.
 void print_summary(const std::vector<std::string>& files, const RenderResult& result,

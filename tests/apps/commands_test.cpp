@@ -101,8 +101,8 @@ TEST_F(CommandsTest, MoreThreadsThanTheMachineHasAreFine) {
   EXPECT_EQ(slab.messages, "");
   const Outcome render = start("render ball.vdb -o picture.exr --size 99x99 --spp 1" + threads);
   EXPECT_EQ(render.status, 0) << render;
-  // Three lines of a summary, and no warning.
-  EXPECT_EQ(std::count(render.messages.begin(), render.messages.end(), '\n'), 3) << render;
+  // Five lines of a summary, and no warning.
+  EXPECT_EQ(std::count(render.messages.begin(), render.messages.end(), '\n'), 5) << render;
   EXPECT_EQ(render.messages.find("arning"), std::string::npos) << render;
 }
 

@@ -1,0 +1,156 @@
+#include "apps/freepath/render_pictures.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "apps/freepath/parse.h"
+#include "apps/freepath/progress_bar.h"
+#include "apps/freepath/render_output.h"
+#include "freepath/base/error.h"
+#include "freepath/transport/auto_tracker.h"
+
+namespace freepath::program {
+namespace {
+
+/// Refuses to write a picture of nothing, perhaps over one of something.
+void check_not_empty(const RenderResult& result) {
+  if (result.most_samples > 0) return;
+  fail("{} after {:.1f} s, before any pixel had a sample: nothing is written; {}",
+       result.interrupted ? "interrupted" : "the time was up", result.seconds,
+       result.interrupted ? "wait longer, or choose a smaller --size"
+                          : "give more --time, or choose a smaller --size or a thinner volume");
+}
+
+/// The medium of a picture, with the times it took in the report.
+Medium load_medium(const RenderPlan& plan, const PictureFiles& files, RenderReport& report) {
+  std::vector<VolumePlan> volume_plans = plan.volumes;
+  for (std::size_t i = 0; i < volume_plans.size(); ++i) volume_plans[i].file = files.volumes[i];
+  Stopwatch watch;
+  std::vector<Volume> volumes = load_volumes(volume_plans, report.volumes);
+  report.seconds_load = watch.lap();
+  Medium medium = make_medium(std::move(volumes), plan.super_voxel);
+  report.seconds_build = watch.lap();
+  return medium;
+}
+
+/// The tracker to walk with, after saying what users must know of it.
+/// @param last the one of the frame before, of which there is nothing new to say
+std::string settle_tracker(const std::string& tracker, const Medium& medium,
+                           const std::string& last = {}) {
+  if (tracker == kAutoTracker) {
+    const TrackerChoice choice = choose_tracker(medium);
+    if (choice.tracker != last) {
+      fmt::print(stderr, "auto: {}, since {}\n", choice.tracker, choice.reason);
+    }
+    return choice.tracker;
+  }
+  if (last.empty()) warn_if_biased(tracker);
+  return tracker;
+}
+
+/// Renders until it is done or the stop is wished, and writes what there is.
+/// @param tracker for the medium: that of the plan may be automatic
+RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
+                              const Medium& medium, const Camera& camera,
+                              const std::string& tracker, const StopOnInterrupt& stop,
+                              RenderReport& report) {
+  report.settings = plan.settings;
+  report.settings.walk.tracker = tracker;
+  report.threads = plan.settings.threads;
+  report.frame = files.frame;
+  const ProgressBar bar(std::size_t(camera.width()) * camera.height(), plan.settings.time_limit);
+  RenderResult result =
+      render(medium, camera, plan.lights, report.settings, [&](const RenderProgress& progress) {
+        bar.show(progress);
+        return !stop.requested();
+      });
+  bar.finish();
+  check_not_empty(result);
+  report.seconds_render = result.seconds;
+  write_outputs(files.outputs, plan.exposure, result, report);
+  if (!files.stats.empty()) write_statistics(files.stats, result, report);
+  return result;
+}
+
+/// "frame 3 (3 of 48): 64 samples per pixel in 0:12, wrote picture.0003.exr"
+void print_frame(std::size_t index, std::size_t count, const PictureFiles& files,
+                 const RenderResult& result, const RenderReport& report) {
+  std::string written;
+  for (const std::string& output : files.outputs) {
+    if (!written.empty()) written += ", ";
+    written += output;
+  }
+  fmt::print(stderr, "frame {} ({} of {}): {}{} samples per pixel in {}, wrote {}\n", *files.frame,
+             index + 1, count, result.interrupted ? "interrupted after " : "", samples_text(result),
+             clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
+             written);
+  print_warnings(result);
+}
+
+/// Numbers of the frames from `begin` on, before `end`.
+std::string frame_list(const std::vector<PictureFiles>& frames, std::size_t begin,
+                       std::size_t end) {
+  std::vector<int> numbers;
+  for (std::size_t i = begin; i < end; ++i) numbers.push_back(*frames[i].frame);
+  return format_frames(numbers);
+}
+
+/// Says how far a sequence came that did not come to its end.
+/// @param done how many frames are complete
+void print_unfinished(const std::vector<PictureFiles>& frames, std::size_t done) {
+  if (done == frames.size()) return;
+  const std::string finished =
+      done == 0 ? "no frame is" : fmt::format("--frames {} are", frame_list(frames, 0, done));
+  fmt::print(stderr, "{} done; to render the others, give --frames {}\n", finished,
+             frame_list(frames, done, frames.size()));
+}
+
+}  // namespace
+
+void render_picture(const RenderPlan& plan, const PictureFiles& files) {
+  RenderReport report;
+  const Medium medium = load_medium(plan, files, report);
+  Stopwatch watch;
+  const Camera camera = make_camera(medium, plan.camera, plan.up);
+  const std::string tracker = settle_tracker(plan.settings.walk.tracker, medium);
+  report.seconds_build += watch.lap();
+  const StopOnInterrupt stop;
+  const RenderResult result = render_and_write(plan, files, medium, camera, tracker, stop, report);
+  print_summary(files.outputs, result, report);
+}
+
+void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& frames) {
+  const StopOnInterrupt stop;
+  std::optional<Camera> camera;
+  std::string tracker;
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < frames.size() && !stop.requested(); ++i) {
+    const PictureFiles& files = frames[i];
+    try {
+      RenderReport report;
+      const Medium medium = load_medium(plan, files, report);
+      Stopwatch watch;
+      if (!camera) camera = make_camera(medium, plan.camera, plan.up);
+      tracker = settle_tracker(plan.settings.walk.tracker, medium, tracker);
+      report.seconds_build += watch.lap();
+      if (stop.requested()) {
+        if (i > 0) break;
+        fail("interrupted before it was rendered: nothing is written; wait longer");
+      }
+      const RenderResult result =
+          render_and_write(plan, files, medium, *camera, tracker, stop, report);
+      print_frame(i, frames.size(), files, result, report);
+      if (!result.interrupted) ++done;
+    } catch (const Error& error) {
+      print_unfinished(frames, done);
+      fail("frame {}: {}", *files.frame, error.what());
+    }
+  }
+  print_unfinished(frames, done);
+}
+
+}  // namespace freepath::program

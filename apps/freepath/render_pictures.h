@@ -1,0 +1,33 @@
+#pragma once
+/// @file Rendering what the options ask for: one picture, or the frames of a sequence.
+
+#include <vector>
+
+#include "apps/freepath/frames.h"
+#include "apps/freepath/render_volumes.h"
+#include "freepath/scene/volume_scene.h"
+
+namespace freepath::program {
+
+/// What all pictures of a command have in common.
+struct RenderPlan {
+  RenderSettings settings;          ///< The seed, too, is the same for all frames.
+  std::vector<VolumePlan> volumes;  ///< Each picture has files of its own for them.
+  CameraOptions camera;
+  UpAxis up = UpAxis::kY;
+  Lights lights;
+  int super_voxel = 0;
+  double exposure = 0;
+};
+
+/// Renders and writes a picture; Ctrl-C while it is rendered ends it early.
+/// @throws Error as the loaders, the renderer and the writers, and for a picture of nothing
+void render_picture(const RenderPlan& plan, const PictureFiles& files);
+
+/// Renders and writes the frames one after the other, with a line on each. All are seen by the
+/// camera of the first one. Ctrl-C ends the frame under way early and the sequence with it, and
+/// what is done is told.
+/// @throws Error as render_picture, naming the frame
+void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& frames);
+
+}  // namespace freepath::program
