@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,11 @@ int run(const Options& options) {
   std::vector<CaseResult> results(cases.size());
   std::atomic<std::size_t> done = 0;
   tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
-    results[i] = measure(cases[i], budget);
+    try {
+      results[i] = measure(cases[i], budget);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("{}: {}", cases[i].name(), error.what()));
+    }
     const std::size_t now = ++done;
     if (now % 100 == 0) fmt::print(stderr, "{} of {} cases\n", now, cases.size());
   });

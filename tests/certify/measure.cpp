@@ -254,7 +254,8 @@ class Measurement {
       return check;
     }
     const bool few = std::min(static_cast<double>(moments.count), exact * paths) < kFew;
-    if (few && moments.unit && moments.count >= kSurelyAnalog) {
+    // A radiance may be all of units too, and its quadrature a trifle above 1.
+    if (few && moments.unit && moments.count >= kSurelyAnalog && exact <= 1) {
       check.z = z_of_p(binomial_two_sided_p(moments.count, static_cast<uint64_t>(paths), exact));
       return check;
     }
