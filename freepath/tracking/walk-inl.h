@@ -191,6 +191,7 @@ class Walk {
     tracker_.template advance<N>(bounds, length, rows);
     group.store_rows(rows, lanes);
   }
+
   /// Begins the look-ups of the lanes that have found their tentative collision; the control, if
   /// the method has one, decides first.
   HWY_INLINE void aim(Group& group) {

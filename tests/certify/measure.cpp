@@ -31,6 +31,8 @@ constexpr double kLargestSkewness = 0.05;
 constexpr double kLargestKurtosis = 0.01;
 /// Single precision, relative to what is expected: some hundred terms of a sum.
 constexpr double kRounding = 2e-5;
+/// Events of which so many are expected are seen: none comes with a probability of e^-20.
+constexpr double kSurelySeen = 20;
 /// Look-ups and steps of a path above which a case takes fewer paths, and below which it may take
 /// more; and the share of the paths that those on one lane and methods that are no walks take.
 constexpr double kUsualWork = 40;
@@ -260,7 +262,12 @@ class Measurement {
       return check;
     }
     if (!has_no_variance()) {
-      const bool rare = moments.count < kFew || exact * paths < kFewExpected;
+      // A mean without a spread that is off has not seen what makes the spread: no wonder where
+      // that is rare.
+      const double off = std::abs(check.estimate - exact);
+      const bool unseen =
+          check.standard_error == 0 && off > kRounding * exact && off * paths < kSurelySeen;
+      const bool rare = moments.count < kFew || exact * paths < kFewExpected || unseen;
       const bool heavy = moments.paths_for_normal_mean(paths) > paths;
       check.standing = rare ? Standing::kRare : heavy ? Standing::kHeavy : Standing::kTested;
     }

@@ -215,21 +215,6 @@ std::vector<Component> two_components(const Planted& planted = {}) {
   return components;
 }
 
-/// A mean over all paths of what only some of them add to.
-struct Tally {
-  double sum = 0;
-  double squares = 0;
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-  }
-  double mean(std::size_t paths) const { return sum / static_cast<double>(paths); }
-  double standard_error(std::size_t paths) const {
-    const auto n = static_cast<double>(paths);
-    return std::sqrt((squares / n - mean(paths) * mean(paths)) / n);
-  }
-};
-
 using Estimates = std::array<std::array<Tally, kQuantities>, kChannels>;
 using Expectations = std::array<std::array<double, kQuantities>, kChannels>;
 

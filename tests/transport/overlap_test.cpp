@@ -201,16 +201,6 @@ std::string describe(const FlightCase& test) {
          (test.grey ? ", grey" : ", chromatic");
 }
 
-/// A mean over all paths of what only some of them add to.
-struct Tally {
-  double sum = 0;
-  double squares = 0;
-  void add(double value) {
-    sum += value;
-    squares += value * value;
-  }
-};
-
 using Tallies = std::array<std::array<Tally, kQuantities>, kChannels>;
 using Expectations = std::array<std::array<double, kQuantities>, kChannels>;
 
@@ -269,15 +259,14 @@ Expectations expect(const std::vector<Component>& components,
 
 /// The largest z of all quantities in the channels that are walked.
 double largest_z(const Tallies& tallies, const Expectations& expected, const FlightCase& test) {
-  const auto n = static_cast<double>(test.paths);
   double largest = 0;
   for (int channel = 0; channel < kChannels; ++channel) {
     if (test.channel >= 0 && channel != test.channel) continue;
     for (int q = 0; q < kQuantities; ++q) {
       const Tally& tally = tallies[channel][q];
-      const double mean = tally.sum / n;
-      const double error = std::sqrt((tally.squares / n - mean * mean) / n);
-      const double z = (mean - expected[channel][q]) / std::hypot(error, kQuadrature);
+      const double error = tally.standard_error(test.paths);
+      const double z =
+          (tally.mean(test.paths) - expected[channel][q]) / std::hypot(error, kQuadrature);
       largest = std::isnan(z) ? HUGE_VAL : std::max(largest, std::abs(z));
     }
   }

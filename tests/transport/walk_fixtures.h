@@ -122,6 +122,21 @@ inline RayIntegrals integrate(const Medium& medium, const TestRay& ray, Interpol
   return result;
 }
 
+/// A mean over all paths of what only some of them add to.
+struct Tally {
+  double sum = 0;
+  double squares = 0;
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+  }
+  double mean(std::size_t paths) const { return sum / static_cast<double>(paths); }
+  double standard_error(std::size_t paths) const {
+    const auto n = static_cast<double>(paths);
+    return std::sqrt((squares / n - mean(paths) * mean(paths)) / n);
+  }
+};
+
 inline constexpr Interpolation kInterpolations[] = {
     Interpolation::kNearest, Interpolation::kTrilinear, Interpolation::kStochastic};
 

@@ -12,17 +12,21 @@ void SceneParser::define(std::map<std::string, int, std::less<>>& names, const T
   fail_at(lexer_->location(name), "{} {} is defined already", what, in_quotes(name.text));
 }
 
+PbrtEntity SceneParser::expect_typed_parameters(const std::string& owner,
+                                                const SourceLocation& location,
+                                                AttributeTarget target) {
+  PbrtEntity entity{{}, location, expect_parameters(owner, location, target)};
+  entity.type = entity.parameters.get_string("type", "");
+  if (entity.type.empty()) fail_at(location, "{} needs a parameter \"string type\"", owner);
+  return entity;
+}
+
 void SceneParser::make_named_material(const SourceLocation& location) {
   const Token name = expect_string("the name of a material");
   define(material_names_, name, static_cast<int>(scene_.materials.size()), "material");
-  PbrtMaterial material;
-  material.name = name.text;
-  material.location = location;
   const std::string owner = fmt::format("material {}", in_quotes(name.text));
-  material.parameters = expect_parameters(owner, location, AttributeTarget::kMaterial);
-  material.type = material.parameters.get_string("type", "");
-  if (material.type.empty()) fail_at(location, "{} needs a parameter \"string type\"", owner);
-  scene_.materials.push_back(std::move(material));
+  scene_.materials.push_back(
+      {expect_typed_parameters(owner, location, AttributeTarget::kMaterial), name.text});
 }
 
 void SceneParser::named_material(const SourceLocation& /*location*/) {
@@ -57,15 +61,9 @@ void SceneParser::texture(const SourceLocation& location) {
 void SceneParser::make_named_medium(const SourceLocation& location) {
   const Token name = expect_string("the name of a medium");
   define(medium_names_, name, static_cast<int>(scene_.media.size()), "medium");
-  PbrtMedium medium;
-  medium.name = name.text;
-  medium.location = location;
-  medium.world_from_medium = state_.transform;
   const std::string owner = fmt::format("medium {}", in_quotes(name.text));
-  medium.parameters = expect_parameters(owner, location, AttributeTarget::kMedium);
-  medium.type = medium.parameters.get_string("type", "");
-  if (medium.type.empty()) fail_at(location, "{} needs a parameter \"string type\"", owner);
-  scene_.media.push_back(std::move(medium));
+  scene_.media.push_back({expect_typed_parameters(owner, location, AttributeTarget::kMedium),
+                          name.text, state_.transform});
 }
 
 void SceneParser::medium_interface(const SourceLocation& /*location*/) {

@@ -78,6 +78,9 @@ class SceneParser {
   ParameterList expect_parameters(const std::string& owner, const SourceLocation& location);
   ParameterList expect_parameters(const std::string& owner, const SourceLocation& location,
                                   AttributeTarget target);
+  /// Parameters whose "string type" names the implementation.
+  PbrtEntity expect_typed_parameters(const std::string& owner, const SourceLocation& location,
+                                     AttributeTarget target);
   PbrtEntity expect_entity(std::string_view directive, const SourceLocation& location);
   PbrtEntity expect_entity(std::string_view directive, const SourceLocation& location,
                            AttributeTarget target);
