@@ -262,11 +262,11 @@ class Measurement {
       return check;
     }
     if (!has_no_variance()) {
-      // A mean without a spread that is off has not seen what makes the spread: no wonder where
-      // that is rare.
+      // A mean that is off although nothing but rounding spreads has not seen what makes the
+      // spread: no wonder where that is rare.
       const double off = std::abs(check.estimate - exact);
-      const bool unseen =
-          check.standard_error == 0 && off > kRounding * exact && off * paths < kSurelySeen;
+      const bool spreads = moments.variance(paths) > std::pow(kRounding * exact, 2);
+      const bool unseen = !spreads && off > kRounding * exact && off * paths < kSurelySeen;
       const bool rare = moments.count < kFew || exact * paths < kFewExpected || unseen;
       const bool heavy = moments.paths_for_normal_mean(paths) > paths;
       check.standing = rare ? Standing::kRare : heavy ? Standing::kHeavy : Standing::kTested;
