@@ -48,6 +48,11 @@ class RgbSpectrum {
     return illuminant_ ? value * (*illuminant_)(wavelength) : value;
   }
 
+  /// Whether it has one value at all wavelengths.
+  bool is_constant() const {
+    return !illuminant_ && (scale_ == 0 || (polynomial_.c[0] == 0 && polynomial_.c[1] == 0));
+  }
+
   const SigmoidPolynomial& polynomial() const { return polynomial_; }
   double scale() const { return scale_; }
 

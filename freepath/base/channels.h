@@ -1,0 +1,66 @@
+#pragma once
+/// @file What a path carries: a value in each of its channels.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace freepath {
+
+/// The most channels that a path carries: R, G and B leave the last one 0.
+inline constexpr int kMaxChannels = 4;
+
+/// Values of the channels of a path: R, G, B, or radiances at its wavelengths. What the channels
+/// stand for, the path's SpectrumValues say.
+class alignas(16) Channels {
+ public:
+  constexpr Channels() = default;
+  constexpr explicit Channels(float value) : values_{value, value, value, value} {}
+  constexpr Channels(float a, float b, float c, float d = 0) : values_{a, b, c, d} {}
+
+  constexpr float operator[](int i) const { return values_[i]; }
+  constexpr float& operator[](int i) { return values_[i]; }
+
+  constexpr Channels& operator+=(const Channels& o) {
+    for (int i = 0; i < kMaxChannels; ++i) values_[i] += o.values_[i];
+    return *this;
+  }
+  constexpr Channels& operator-=(const Channels& o) {
+    for (int i = 0; i < kMaxChannels; ++i) values_[i] -= o.values_[i];
+    return *this;
+  }
+  constexpr Channels& operator*=(const Channels& o) {
+    for (int i = 0; i < kMaxChannels; ++i) values_[i] *= o.values_[i];
+    return *this;
+  }
+  constexpr Channels& operator*=(float factor) {
+    for (float& value : values_) value *= factor;
+    return *this;
+  }
+  friend constexpr Channels operator+(Channels a, const Channels& b) { return a += b; }
+  friend constexpr Channels operator-(Channels a, const Channels& b) { return a -= b; }
+  friend constexpr Channels operator*(Channels a, const Channels& b) { return a *= b; }
+  friend constexpr Channels operator*(Channels a, float factor) { return a *= factor; }
+  friend constexpr Channels operator*(float factor, Channels a) { return a *= factor; }
+  friend constexpr bool operator==(const Channels&, const Channels&) = default;
+
+ private:
+  std::array<float, kMaxChannels> values_{};
+};
+
+inline bool is_black(const Channels& c) { return c == Channels(); }
+inline bool is_finite(const Channels& c) {
+  return std::isfinite(c[0]) && std::isfinite(c[1]) && std::isfinite(c[2]) && std::isfinite(c[3]);
+}
+/// Largest magnitude of all channels; NaN if a channel is.
+inline float largest_magnitude(const Channels& c) {
+  float largest = 0;
+  for (int i = 0; i < kMaxChannels; ++i) {
+    const float magnitude = std::abs(c[i]);
+    largest = largest < magnitude || std::isnan(magnitude) ? magnitude : largest;
+    if (std::isnan(largest)) return largest;
+  }
+  return largest;
+}
+
+}  // namespace freepath

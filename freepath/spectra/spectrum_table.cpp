@@ -1,0 +1,113 @@
+#include "freepath/spectra/spectrum_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace freepath {
+namespace {
+
+constexpr double kSodiumLine = 589.3;  // [nm], where refractive indices are tabulated
+
+Vec3d reflected_rgb(const SpectralDistribution& spectrum, const RgbColorSpace& space) {
+  Vec3d rgb(0);
+  const auto weights = space.reflectance_weights();
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double wavelength =
+        kShortestWavelength + RgbColorSpace::kNodeDistance * static_cast<double>(i);
+    rgb += weights[i] * spectrum(wavelength);
+  }
+  return rgb;
+}
+
+Channels to_channels(const Vec3d& rgb) {
+  return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
+}
+
+Channels to_channels(const std::array<double, kMaxChannels>& values) {
+  Channels channels;
+  for (int i = 0; i < kMaxChannels; ++i) channels[i] = static_cast<float>(values[i]);
+  return channels;
+}
+
+}  // namespace
+
+SpectrumTable::SpectrumTable(const RgbColorSpace& space)
+    : space_(space),
+      basis_{SpectralDistribution(RgbSpectrum::reflectance({1, 0, 0}, space)),
+             SpectralDistribution(0),
+             SpectralDistribution(RgbSpectrum::reflectance({0, 0, 1}, space))} {
+  add(SpectralDistribution(0), SpectrumRole::kReflectance);
+}
+
+Channels SpectrumTable::rgb_of(const SpectralDistribution& spectrum, SpectrumRole role) const {
+  if (role == SpectrumRole::kIndex) return Channels(static_cast<float>(spectrum(kSodiumLine)));
+  if (std::holds_alternative<ConstantSpectrum>(spectrum.kind()) &&
+      role == SpectrumRole::kReflectance) {
+    const auto value = static_cast<float>(spectrum(kSodiumLine));
+    return {value, value, value};
+  }
+  return to_channels(role == SpectrumRole::kReflectance ? reflected_rgb(spectrum, space_)
+                                                        : space_.from_xyz(observe(spectrum)));
+}
+
+SpectrumId SpectrumTable::add(const SpectralDistribution& spectrum, SpectrumRole role) {
+  entries_.push_back({spectrum, role, rgb_of(spectrum, role)});
+  return {static_cast<uint32_t>(entries_.size() - 1)};
+}
+
+bool SpectrumTable::is_constant(SpectrumId id) const {
+  const SpectralDistribution::Kind& kind = entries_[id.index].spectrum.kind();
+  if (std::holds_alternative<ConstantSpectrum>(kind)) return true;
+  if (const auto* const linear = std::get_if<LinearSpectrum>(&kind)) {
+    const auto values = linear->values();
+    return linear->outside() == OutsideSamples::kHold &&
+           std::all_of(values.begin(), values.end(),
+                       [&](double value) { return value == values.front(); });
+  }
+  if (const auto* const rgb = std::get_if<RgbSpectrum>(&kind)) return rgb->is_constant();
+  return false;
+}
+
+SpectrumValues SpectrumTable::in_rgb() const {
+  SpectrumValues values;
+  for (const Entry& entry : entries_) values.values_.push_back(entry.rgb);
+  for (int i = 0; i < 3; ++i) {
+    Vec3d unit(0);
+    unit[i] = 1;
+    values.reflectance_basis_[i] = values.illuminant_basis_[i] = to_channels(unit);
+    values.to_rgb_[i] = Vec3f(unit);
+  }
+  values.channels_ = 3;
+  return values;
+}
+
+SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
+  SpectrumValues values;
+  values.values_.reserve(entries_.size());
+  for (const Entry& entry : entries_) {
+    values.values_.push_back(to_channels(entry.spectrum.at(wavelengths.lambda)));
+  }
+  const auto white = space_.illuminant();
+  for (int i = 0; i < kMaxChannels; ++i) {
+    const double lambda = wavelengths.lambda[i];
+    // Red and blue are smooth fits; green is what they leave of white, so that greys are constant
+    // and every colour comes back exactly. It is below 0 only where nothing is seen.
+    const double red = basis_[0](lambda);
+    const double blue = basis_[2](lambda);
+    const double green = std::max(0.0, 1 - red - blue);
+    const double mix[3] = {red, green, blue};
+    for (int c = 0; c < 3; ++c) {
+      values.reflectance_basis_[c][i] = static_cast<float>(mix[c]);
+      values.illuminant_basis_[c][i] = static_cast<float>(mix[c] * white(lambda));
+    }
+    const Vec3d xyz = color_matching(lambda) /
+                      (wavelengths.pdf[i] * static_cast<double>(kMaxChannels) * kLuminousIntegral);
+    values.to_rgb_[i] = Vec3f(space_.from_xyz(xyz));
+  }
+  values.wavelengths_ = wavelengths.lambda;
+  values.channels_ = kMaxChannels;
+  return values;
+}
+
+}  // namespace freepath

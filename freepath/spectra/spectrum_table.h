@@ -1,0 +1,109 @@
+#pragma once
+/// @file All spectra of a scene, and what they are in the channels of a path.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "freepath/base/channels.h"
+#include "freepath/base/vector.h"
+#include "freepath/spectra/rgb_color_space.h"
+#include "freepath/spectra/spectral_distribution.h"
+#include "freepath/spectra/wavelengths.h"
+
+namespace freepath {
+
+/// What a spectrum is of, which decides what it is in R, G, B.
+enum class SpectrumRole {
+  kReflectance,  ///< Factors and coefficients: the colour of a surface under the space's white.
+  kIlluminant,   ///< Light: the colour that the observer sees.
+  kIndex,        ///< Refractive indices: the value at 589.3 nm (the sodium line), in all channels.
+};
+
+/// A spectrum of a SpectrumTable. The standard one is black.
+struct SpectrumId {
+  uint32_t index = 0;
+
+  bool operator==(const SpectrumId&) const = default;
+};
+
+/// A path's wavelengths in spectral rendering; the first channel need not be their hero.
+using PathWavelengths = Wavelengths<kMaxChannels>;
+
+/// The spectra of a table in the channels of a path: R, G, B, or its wavelengths. Cheap to read: a
+/// spectrum is evaluated once for all paths that share wavelengths.
+class SpectrumValues {
+ public:
+  const Channels& operator[](SpectrumId id) const { return values_[id.index]; }
+
+  /// A colour of a texture as a reflectance or coefficient, by the three basis spectra below: what
+  /// it is in R, G, B comes back exactly. One multiplication per channel and component, where the
+  /// smooth fit (RgbSpectrum) would take microseconds.
+  Channels reflectance(const Vec3f& rgb) const { return mix(reflectance_basis_, rgb); }
+  /// A colour of a texture as emitted light.
+  Channels illuminant(const Vec3f& rgb) const { return mix(illuminant_basis_, rgb); }
+
+  /// Channels that are in use: 3 of R, G, B.
+  int channels() const { return channels_; }
+
+  /// The colour of what a path carries, R, G, B of the table's space: an unbiased estimate for
+  /// wavelengths that are drawn as sample_wavelengths does.
+  Vec3f to_rgb(const Channels& radiance) const {
+    Vec3f rgb(0);
+    for (int i = 0; i < kMaxChannels; ++i) rgb += to_rgb_[i] * radiance[i];
+    return rgb;
+  }
+
+  /// Wavelengths of the channels [nm]; all 0 of R, G, B.
+  const std::array<double, kMaxChannels>& wavelengths() const { return wavelengths_; }
+
+ private:
+  friend class SpectrumTable;
+
+  static Channels mix(const std::array<Channels, 3>& basis, const Vec3f& rgb) {
+    return basis[0] * rgb.x + basis[1] * rgb.y + basis[2] * rgb.z;
+  }
+
+  std::vector<Channels> values_;
+  std::array<Channels, 3> reflectance_basis_;
+  std::array<Channels, 3> illuminant_basis_;
+  std::array<Vec3f, kMaxChannels> to_rgb_;
+  std::array<double, kMaxChannels> wavelengths_{};
+  int channels_ = 3;
+};
+
+/// The spectra of a scene. Filled while the scene is built, then shared by all threads.
+class SpectrumTable {
+ public:
+  /// @param space of the film, and of the colours that textures hold
+  explicit SpectrumTable(const RgbColorSpace& space);
+
+  SpectrumId add(const SpectralDistribution& spectrum, SpectrumRole role);
+
+  const SpectralDistribution& spectrum(SpectrumId id) const { return entries_[id.index].spectrum; }
+  const RgbColorSpace& space() const { return space_; }
+  std::size_t size() const { return entries_.size(); }
+  /// Whether an index of refraction has the same value at all wavelengths.
+  bool is_constant(SpectrumId id) const;
+
+  /// In R, G, B.
+  SpectrumValues in_rgb() const;
+  /// At wavelengths.
+  SpectrumValues at(const PathWavelengths& wavelengths) const;
+
+ private:
+  struct Entry {
+    SpectralDistribution spectrum;
+    SpectrumRole role = SpectrumRole::kReflectance;
+    Channels rgb;
+  };
+
+  Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role) const;
+
+  const RgbColorSpace& space_;
+  std::vector<Entry> entries_;
+  std::array<SpectralDistribution, 3> basis_;  // of red and blue; green follows from them
+};
+
+}  // namespace freepath
