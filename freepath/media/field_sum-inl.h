@@ -9,6 +9,7 @@
 #endif
 
 #include "freepath/media/field_lookup-inl.h"
+#include "freepath/media/radiance_field-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
@@ -122,6 +123,29 @@ class FieldSum {
     return left;
   }
 
+  /// Whether emission varies from place to place: then `coefficients` lack it, and it has to be
+  /// added.
+  HWY_INLINE bool has_radiance_fields() const { return medium_.radiance_views != nullptr; }
+  /// Adds the emission at points [walk space] to the coefficients of the same densities.
+  HWY_INLINE void add_emission(const State& state, const VecF (&point)[3], MaskF lanes,
+                               Coefficients& sum) const {
+    add_emission([&](int k) { return lookup_.density(k, state); }, point, lanes, sum);
+  }
+  HWY_INLINE void add_emission(const Control& control, const VecF (&point)[3], MaskF lanes,
+                               Coefficients& sum) const {
+    add_emission([&](int k) { return hn::Load(kFloat, control.density[k]); }, point, lanes, sum);
+  }
+  HWY_INLINE void add_emission(const State& state, const Control& control, const VecF (&point)[3],
+                               MaskF lanes, Coefficients& sum) const {
+    add_emission([&](int k) { return residual_density(k, state, control); }, point, lanes, sum);
+  }
+  HWY_INLINE void add_emission(VecI component, const State& state, const VecF (&point)[3],
+                               MaskF lanes, Coefficients& sum) const {
+    add_emission(
+        [&](int k) { return lookup_.density(k, state, hn::Eq(component, hn::Set(kInt, k))); },
+        point, lanes, sum);
+  }
+
   /// Chooses the component that a scattering belongs to, with probability proportional to the sum
   /// over channels of |w(λ) sigma_s,k(λ)/sigma_s(λ)|, and corrects the weights by
   /// sigma_s,k(λ)/(sigma_s(λ) P_k): the sum of their magnitudes stays what it was.
@@ -172,6 +196,22 @@ class FieldSum {
   }
 
  private:
+  template <class Density>
+  HWY_INLINE void add_emission(const Density& density_of, const VecF (&point)[3], MaskF lanes,
+                               Coefficients& sum) const {
+    for (int k = 0; k < medium_.component_count; ++k) {
+      const ComponentView& component = medium_.components[k];
+      if (component.radiance == nullptr) continue;
+      VecF radiance[N];
+      radiance_at<N>(component.radiance, point, lanes, radiance);
+      const VecF density = density_of(k);
+      for (int channel = 0; channel < N; ++channel) {
+        const VecF scaled = hn::Mul(radiance[channel], set(component.radiance_scale[channel]));
+        sum.emission[channel] = hn::MulAdd(density, scaled, sum.emission[channel]);
+      }
+    }
+  }
+
   static HWY_INLINE void add(VecF& sum, VecF density, float cross_section) {
     sum = hn::MulAdd(density, set(cross_section), sum);
   }

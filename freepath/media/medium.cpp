@@ -7,6 +7,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/media/density_function.h"
+#include "freepath/media/medium_channels.h"
 
 namespace freepath {
 namespace {
@@ -53,14 +54,6 @@ void check_component(const Component& component, const Component& first, std::si
   if (!is_finite(field.index_to_world)) {
     fail("grid '{}': its transform is not finite; set another", field.name);
   }
-}
-
-/// Whether the channels are equal but for rounding: (1 - albedo) · sigma and albedo · sigma, each
-/// scaled once more, add up to sigma within a few units in the last place.
-bool is_grey_but_for_rounding(const Spectrum& s) {
-  constexpr float kTolerance = 8 * std::numeric_limits<float>::epsilon();
-  const auto [low, high] = std::minmax({s.x, s.y, s.z});
-  return high - low <= kTolerance * high;
 }
 
 /// Edge of a cube with a voxel's volume [world], for the cost model alone.
@@ -202,6 +195,25 @@ AffineMap Medium::walk_to_component(std::size_t component) const {
   return map;
 }
 
+AffineMap Medium::walk_to_field(const Field& field) const {
+  const double determinant = field.index_to_world.determinant();
+  if (!std::isfinite(determinant) || determinant == 0) {
+    fail("grid '{}': its transform has no inverse", field.name);
+  }
+  // Along rows: walk space → place in the grid → index of the grid → world → index of the field.
+  Matrix4d place_to_index;
+  place_to_index.setTranslation(Vec3d(space_.origin) - Vec3d(0.5));
+  const Matrix4d places = place_to_index * space_.index_to_world * field.index_to_world.inverse();
+  AffineMap map;
+  for (int to = 0; to < 3; ++to) {
+    for (int from = 0; from < 3; ++from) {
+      map.linear[from][to] = static_cast<float>(places[from][to] * super_voxels_.cell_size);
+    }
+    map.offset[to] = static_cast<float>(places[3][to] - field.voxels.origin()[to] + 0.5);
+  }
+  return map;
+}
+
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
   if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels_.counts)};
   const double reach = interpolation == Interpolation::kNearest ? 0.5 : 1.0;
@@ -230,8 +242,9 @@ Box3d Medium::world_bounds() const {
 }
 
 bool Medium::has_grey_extinction() const {
-  return std::all_of(components_.begin(), components_.end(),
-                     [](const Component& c) { return is_grey_but_for_rounding(c.sigma_t()); });
+  MediumChannels channels = channels_of(*this);
+  channels.count = kChannels;
+  return channels.has_grey_extinction();
 }
 
 bool Medium::is_grey() const {
@@ -241,10 +254,6 @@ bool Medium::is_grey() const {
   });
 }
 
-bool Medium::emits() const {
-  return std::any_of(components_.begin(), components_.end(), [](const Component& c) {
-    return largest(c.sigma_a) > 0 && largest(c.emission) > 0;
-  });
-}
+bool Medium::emits() const { return channels_of(*this).emits(); }
 
 }  // namespace freepath

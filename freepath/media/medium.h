@@ -80,6 +80,9 @@ class Medium {
   /// Walk space → place in a component's voxels, counted from the first of its index; the centre of
   /// voxel i is at i + 1/2.
   AffineMap walk_to_component(std::size_t component) const;
+  /// Walk space → place in the voxels of another field, which may stand anyhow in the world.
+  /// @throws Error if the field's transform has no inverse
+  AffineMap walk_to_field(const Field& field) const;
 
   /// Where the density may differ from 0 [walk space], which depends on the filter's reach.
   Box3f walk_bounds(Interpolation interpolation) const;

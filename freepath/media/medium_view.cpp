@@ -1,11 +1,48 @@
 #include "freepath/media/medium_view.h"
 
+#include <utility>
+
 #include "freepath/media/density_function.h"
 
 namespace freepath {
+namespace {
 
-MediumView view_of(const Medium& medium, Interpolation interpolation, int channel,
-                   const Vec3d& origin) {
+RadianceView view_of(const RadianceField& radiance, const Medium& medium) {
+  RadianceView view;
+  if (!radiance.field) return view;
+  const BrickMap& voxels = radiance.field->voxels;
+  view.index = voxels.index().data();
+  view.voxels = voxels.voxels().data();
+  for (int axis = 0; axis < 3; ++axis) view.brick_counts[axis] = voxels.brick_counts()[axis];
+  view.walk_to_voxels = medium.walk_to_field(*radiance.field);
+  if (radiance.table) {
+    view.table = radiance.table->data();
+    view.first = radiance.first;
+    view.per_step = 1 / radiance.step;
+    view.last = static_cast<float>(radiance.table->size() - 1);
+  }
+  return view;
+}
+
+void set_radiance(const Medium& medium, const MediumChannels& channels, MediumView& view) {
+  auto views = std::make_shared<std::vector<RadianceView>>();
+  for (const ComponentChannels& component : channels.components) {
+    for (const RadianceField& radiance : component.radiance) {
+      views->push_back(view_of(radiance, medium));
+    }
+  }
+  for (std::size_t k = 0; k < channels.components.size(); ++k) {
+    if (channels.components[k].radiance[0].field) {
+      view.components[k].radiance = views->data() + k * kMaxChannels;
+    }
+  }
+  view.radiance_views = std::move(views);
+}
+
+}  // namespace
+
+MediumView view_of(const Medium& medium, Interpolation interpolation,
+                   const MediumChannels& channels, const Vec3d& origin) {
   MediumView view;
   const SuperVoxels& cells = medium.super_voxels();
   const Box3f bounds = medium.walk_bounds(interpolation);
@@ -37,13 +74,15 @@ MediumView view_of(const Medium& medium, Interpolation interpolation, int channe
       target.brick_counts[axis] = component.density->voxels.brick_counts()[axis];
     }
     target.walk_to_voxels = medium.walk_to_component(k);
-    for (int slot = 0; slot < kChannels; ++slot) {
-      const int from = channel < 0 ? slot : channel;
-      target.sigma_a[slot] = component.sigma_a[from];
-      target.sigma_s[slot] = component.sigma_s[from];
-      target.emission[slot] = component.sigma_a[from] * component.emission[from];
+    const ComponentChannels& values = channels.components[k];
+    target.sigma_a = values.sigma_a;
+    target.sigma_s = values.sigma_s;
+    auto& emission = values.radiance[0].field ? target.radiance_scale : target.emission;
+    for (int slot = 0; slot < kMaxChannels; ++slot) {
+      emission[slot] = values.sigma_a[slot] * values.emission[slot];
     }
   }
+  if (channels.has_radiance_fields()) set_radiance(medium, channels, view);
   return view;
 }
 

@@ -3,10 +3,26 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
+#include "freepath/base/channels.h"
 #include "freepath/media/medium.h"
+#include "freepath/media/medium_channels.h"
 
 namespace freepath {
+
+/// A RadianceField as the lanes read it.
+struct RadianceView {
+  const uint32_t* index = nullptr;  ///< Null: there is none.
+  const float* voxels = nullptr;
+  std::array<int32_t, 3> brick_counts{};
+  AffineMap walk_to_voxels;
+  const float* table = nullptr;  ///< Null: the field is the radiance.
+  float first = 0;               ///< Field at the first value of the table.
+  float per_step = 1;            ///< Values of the table per unit of the field.
+  float last = 0;                ///< Number of its last value.
+};
 
 /// Cross sections of one component in the channels that a walk carries [1/m per density].
 struct ComponentView {
@@ -15,9 +31,11 @@ struct ComponentView {
   const DensityFunction* function = nullptr;  ///< In place of both, if set.
   std::array<int32_t, 3> brick_counts{};      ///< Of the index.
   AffineMap walk_to_voxels;  ///< Walk space → place in the voxels; used unless aligned.
-  std::array<float, kChannels> sigma_a{};
-  std::array<float, kChannels> sigma_s{};
-  std::array<float, kChannels> emission{};  ///< sigma_a · L_e
+  std::array<float, kMaxChannels> sigma_a{};
+  std::array<float, kMaxChannels> sigma_s{};
+  std::array<float, kMaxChannels> emission{};        ///< sigma_a · L_e, where that does not vary.
+  const RadianceView* radiance = nullptr;            ///< Of each channel, where it does;
+  std::array<float, kMaxChannels> radiance_scale{};  ///< and what it is multiplied by, sigma_a too.
 };
 
 /// A borrowed view of a Medium, valid while that lives.
@@ -35,11 +53,13 @@ struct MediumView {
   bool aligned = true;                 ///< Medium::aligned(): one voxel serves all components.
   int component_count = 0;
   std::array<ComponentView, Medium::kMaxComponents> components{};
+  /// What the components' radiance points at; null where emission does not vary.
+  std::shared_ptr<const std::vector<RadianceView>> radiance_views{};
 };
 
-/// @param channel the one channel to carry, or -1 for all of them
+/// @param channels of its components; their fields must live as long
 /// @param origin what positions of rays are relative to [world]
-MediumView view_of(const Medium& medium, Interpolation interpolation, int channel,
-                   const Vec3d& origin = Vec3d(0));
+MediumView view_of(const Medium& medium, Interpolation interpolation,
+                   const MediumChannels& channels, const Vec3d& origin = Vec3d(0));
 
 }  // namespace freepath

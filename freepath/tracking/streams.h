@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/channels.h"
 #include "freepath/tracking/statistics.h"
 
 namespace freepath {
@@ -26,9 +26,9 @@ struct RayStream {
   std::vector<uint32_t> stream;  ///< See stream_number().
   /// Throughput of the paths so far, where it is set: flights go on from these weights and not from
   /// 1, and methods that look at the path's history see it.
-  std::array<std::vector<float>, kChannels> weight;
+  std::array<std::vector<float>, kMaxChannels> weight;
   /// Relative densities of those paths, had each channel been the hero (FlightStream::density).
-  std::array<std::vector<float>, kChannels> density;
+  std::array<std::vector<float>, kMaxChannels> density;
 
   std::size_t size() const { return count_; }
   /// Whether the rays bring weights along.
@@ -60,10 +60,10 @@ struct FlightStream {
   std::vector<float> t;  ///< Distance flown [world].
   std::vector<Event> event;
   std::vector<uint8_t> component;  ///< Of a scattering.
-  std::array<std::vector<float>, kChannels> weight;
-  std::array<std::vector<float>, kChannels> emitted;  ///< Emitted radiance collected on the way.
+  std::array<std::vector<float>, kMaxChannels> weight;
+  std::array<std::vector<float>, kMaxChannels> emitted;  ///< Emitted radiance collected on the way.
   /// With hero-wavelength: relative densities of the path, to be handed on with its next ray.
-  std::array<std::vector<float>, kChannels> density;
+  std::array<std::vector<float>, kMaxChannels> density;
   std::vector<uint32_t> lookups;
 
   std::size_t size() const { return count_; }

@@ -206,15 +206,15 @@ class Walk {
       const auto bounds = medium_.template bounds<Tracker::kRateNeedsControl>(record);
       advance_rows(bounds, hn::Sub(place, cursor.t), colliding, group);
     }
-    if constexpr (Tracker::kControl) {
-      const auto record = segments_.record(cursor, colliding);
-      medium_.set_control(record.record, tracker_.control_scale(), group.control);
-      if constexpr (Tracker::kDecides) decide(group);
-    }
     assign(cursor.t, colliding, place);
     hn::Store(cursor.t, kFloat, group.segments.t);
     VecF point[3];
     segments_.position(cursor, point);
+    if constexpr (Tracker::kControl) {
+      const auto record = segments_.record(cursor, colliding);
+      medium_.set_control(record.record, tracker_.control_scale(), group.control);
+      if constexpr (Tracker::kDecides) decide(point, group);
+    }
     medium_.lookup().aim(point, mask_of(group.looking), hn::Load(kUint, group.words[1]),
                          hn::Load(kUint, group.words[2]), group.lookup);
     if constexpr (Tracker::kOneComponent) {
@@ -273,9 +273,10 @@ class Walk {
   }
 
   /// Lets the control decide what it can without a look-up.
-  HWY_INLINE void decide(Group& group) {
+  HWY_INLINE void decide(const VecF (&point)[3], Group& group) {
     Collision<N> c = begin_collision(group, group.colliding);
-    const auto control = medium_.coefficients(group.control);
+    auto control = medium_.coefficients(group.control);
+    if (varies_emission()) medium_.add_emission(group.control, point, c.lanes, control);
     const MaskF decided = tracker_.template decide<N>(modes_, control, c);
     const VecI component =
         medium_.choose_component(group.control, control, c.scatter_uniform, c.scatter, c.weight);
@@ -307,21 +308,32 @@ class Walk {
     group.load_rows(rows);
     c.rows = rows;
     if constexpr (Tracker::kNeedsDepth) c.depth = hn::Load(kFloat, group.drawn);
+    VecF point[3] = {c.rate, c.rate, c.rate};  // of no use but to emission that varies
+    if (varies_emission()) segments_.position(segments_.load(group.segments), point);
     VecI component;
     VecF sigma_t;
     if constexpr (Tracker::kOneComponent) {
       component = hn::Load(kInt, group.component);
-      const auto sigma = medium_.coefficients_of(component, group.lookup);
+      auto sigma = medium_.coefficients_of(component, group.lookup);
+      if (varies_emission()) {
+        medium_.add_emission(component, group.lookup, point, c.lanes, sigma);
+      }
       tracker_.template collide<N>(modes_, sigma, c);
       sigma_t = hn::Add(sigma.sigma_a[0], sigma.sigma_s[0]);
     } else if constexpr (Tracker::kControl) {
-      const auto sigma = medium_.residual(group.lookup, group.control);
+      auto sigma = medium_.residual(group.lookup, group.control);
+      if (varies_emission()) {
+        medium_.add_emission(group.lookup, group.control, point, c.lanes, sigma);
+      }
       tracker_.template collide<N>(modes_, sigma, c);
       component = medium_.choose_component(group.lookup, group.control, sigma, c.scatter_uniform,
                                            hn::And(c.scatter, c.lanes), c.weight);
       sigma_t = hn::Sub(sigma.sigma_t[0], hn::Sub(c.full_rate, c.rate));
     } else {
-      const auto sigma = medium_.coefficients(group.lookup);
+      auto sigma = medium_.coefficients(group.lookup);
+      if (varies_emission()) {
+        medium_.add_emission(group.lookup, point, c.lanes, sigma);
+      }
       tracker_.template collide<N>(modes_, sigma, c);
       component = medium_.choose_component(group.lookup, sigma, c.scatter_uniform,
                                            hn::And(c.scatter, c.lanes), c.weight);
@@ -336,6 +348,9 @@ class Walk {
     group.drawing = group.colliding & ~(group.scattered | group.absorbed);
     count(group, sigma_t, c);
   }
+
+  /// Whether emission is wanted and varies from place to place.
+  HWY_INLINE bool varies_emission() const { return modes_.emits && medium_.has_radiance_fields(); }
 
   HWY_INLINE void count(const Group& group, VecF sigma_t, const Collision<N>& c) {
     const auto collisions = static_cast<uint64_t>(std::popcount(group.looking));

@@ -1,10 +1,12 @@
 #pragma once
 /// @file The compiled walks: one function for each method, channel count and SIMD target.
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "freepath/base/channels.h"
 #include "freepath/media/medium_view.h"
 #include "freepath/tracking/method.h"
 #include "freepath/tracking/streams.h"
@@ -29,10 +31,12 @@ using WalkFunction = void (*)(const MediumView& medium, std::span<const float> o
 /// One method as compiled for one target.
 struct Kernel {
   MethodInfo info;
-  WalkFunction one_channel = nullptr;
-  WalkFunction all_channels = nullptr;
+  /// By the number of channels: 1, 3 and 4 are compiled.
+  std::array<WalkFunction, kMaxChannels + 1> walks{};
   /// Throws Error if the method can't walk this medium; null where it can walk any.
   void (*check)(const Medium& medium, Interpolation interpolation) = nullptr;
+  /// Whether it takes emitted radiance for the same everywhere.
+  bool uniform_emission = false;
 };
 
 /// All methods of one target, in the order of the registry.

@@ -80,7 +80,7 @@ class RayMedium {
     std::array<Track, Medium::kMaxComponents> tracks_;
   };
 
-  /// @param channels 1, or kChannels
+  /// @param channels of the walk
   RayMedium(const MediumView& view, int channels);
 
   /// A ray that misses, that has no direction, or whose numbers are not finite gets length 0.

@@ -72,7 +72,11 @@ void fly_stream(const MediumView& view, std::span<const float> options, const Wa
 
 template <class Method>
 Kernel kernel(void (*check)(const Medium&, Interpolation) = nullptr) {
-  return {Method::kInfo, &fly_stream<1, Method>, &fly_stream<kChannels, Method>, check};
+  return {
+      Method::kInfo,
+      {nullptr, &fly_stream<1, Method>, nullptr, &fly_stream<3, Method>, &fly_stream<4, Method>},
+      check,
+      /*uniform_emission=*/true};
 }
 
 /// Fails where densities are computed: reference methods go from voxel to voxel.

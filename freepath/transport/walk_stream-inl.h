@@ -34,7 +34,9 @@ void walk_stream(const MediumView& medium, std::span<const float> options, const
 
 template <class... Methods>
 std::vector<Kernel> make_kernels(MethodList<Methods...> /*list*/) {
-  return {Kernel{Methods::kInfo, &walk_stream<1, Methods>, &walk_stream<kChannels, Methods>}...};
+  return {Kernel{Methods::kInfo,
+                 {nullptr, &walk_stream<1, Methods>, nullptr, &walk_stream<3, Methods>,
+                  &walk_stream<4, Methods>}}...};
 }
 
 }  // namespace freepath::HWY_NAMESPACE

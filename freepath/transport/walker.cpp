@@ -29,6 +29,18 @@ const MethodInfo& info_of(const std::string& text, std::span<const MethodInfo> k
                        [&](const MethodInfo& info) { return info.name == name; });
 }
 
+[[noreturn]] void fail_to_share_paths(const WalkSettings& settings) {
+  fail("tracker '{}' gives each channel of this medium its own path: walk each by itself",
+       settings.tracker);
+}
+
+MediumChannels channels_to_walk(const Medium& medium, const WalkSettings& settings, int channel) {
+  if (channel == Walker::kAllChannels && !shares_paths(medium, settings)) {
+    fail_to_share_paths(settings);
+  }
+  return channels_of(medium, channel);
+}
+
 }  // namespace
 
 std::span<const MethodInfo> tracker_infos() {
@@ -41,19 +53,23 @@ std::span<const MethodInfo> transmittance_infos() {
   return kInfos;
 }
 
+bool shares_paths(const MediumChannels& channels, const WalkSettings& settings) {
+  const MethodInfo info = info_of(settings.tracker, tracker_infos());
+  return info.chromatic || (channels.has_grey_extinction() && !info.one_channel);
+}
+
 bool shares_paths(const Medium& medium, const WalkSettings& settings) {
   const MethodInfo info = info_of(settings.tracker, tracker_infos());
   return info.chromatic || (medium.has_grey_extinction() && !info.one_channel);
 }
 
 Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
-    : view_(view_of(medium, settings.interpolation, channel, settings.origin)),
-      seed_(settings.seed),
-      channels_(channel == kAllChannels && !medium.is_grey() ? kChannels : 1) {
-  if (channel == kAllChannels && !shares_paths(medium, settings)) {
-    fail("tracker '{}' gives each channel of this medium its own path: walk each by itself",
-         settings.tracker);
-  }
+    : Walker(medium, channels_to_walk(medium, settings, channel), settings) {}
+
+Walker::Walker(const Medium& medium, const MediumChannels& channels, const WalkSettings& settings)
+    : seed_(settings.seed), channels_(channels.is_grey() ? 1 : channels.count) {
+  if (channels_ > 1 && !shares_paths(channels, settings)) fail_to_share_paths(settings);
+  view_ = view_of(medium, settings.interpolation, channels, settings.origin);
   const KernelTable& table = kernels(settings.simd);
   tracker_.method = parse_method(settings.tracker, tracker_infos());
   transmittance_.method = parse_method(settings.transmittance, transmittance_infos());
@@ -62,13 +78,17 @@ Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
   for (const Kernel* kernel : {&tracker, &transmittance}) {
     if (kernel->check != nullptr) kernel->check(medium, settings.interpolation);
   }
-  const bool one = channels_ == 1;
-  tracker_.function = one ? tracker.one_channel : tracker.all_channels;
+  if (tracker.uniform_emission && channels.emits() && channels.has_radiance_fields()) {
+    fail(
+        "tracker '{}' takes emitted radiance for the same everywhere, but here it varies from "
+        "place to place: take a null-collision tracker",
+        settings.tracker);
+  }
+  tracker_.function = tracker.walks[channels_];
   // One extinction for all channels makes one transmittance.
-  transmittance_channels_ = medium.has_grey_extinction() ? 1 : channels_;
-  transmittance_.function =
-      transmittance_channels_ == 1 ? transmittance.one_channel : transmittance.all_channels;
-  modes_ = {settings.absorption, settings.emission, medium.emits()};
+  transmittance_channels_ = channels.has_grey_extinction() ? 1 : channels_;
+  transmittance_.function = transmittance.walks[transmittance_channels_];
+  modes_ = {settings.absorption, settings.emission, channels.emits()};
 }
 
 void Walker::walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "freepath/media/medium.h"
+#include "freepath/media/medium_channels.h"
 #include "freepath/transport/kernels.h"
 
 namespace freepath {
@@ -30,6 +31,7 @@ std::span<const MethodInfo> transmittance_infos();
 /// in all. Otherwise each channel takes paths of its own, by a walker of its own.
 /// @throws Error for a tracker that does not exist
 bool shares_paths(const Medium& medium, const WalkSettings& settings);
+bool shares_paths(const MediumChannels& channels, const WalkSettings& settings);
 
 /// Samples free paths and estimates transmittances in one medium. Const and without state of its
 /// own: any number of threads may share it, each with its own streams.
@@ -44,6 +46,11 @@ class Walker {
   ///   where each channel must take its own path
   Walker(const Medium& medium, const WalkSettings& settings, int channel = kAllChannels);
 
+  /// A walker of given channels: of wavelengths, or with emission that varies from place to place.
+  /// @param channels one for each component of the medium; their fields must outlive the walker
+  /// @throws Error as above
+  Walker(const Medium& medium, const MediumChannels& channels, const WalkSettings& settings);
+
   /// Flies every ray to its next scattering, absorption or escape [Kutz17]. Flights are written to
   /// the slots of their rays; a ray's flight depends on the ray and the seed alone.
   void free_paths(const RayStream& rays, FlightStream& flights, WalkStatistics& statistics) const;
@@ -52,7 +59,7 @@ class Walker {
   void transmittance(const RayStream& rays, FlightStream& flights,
                      WalkStatistics& statistics) const;
 
-  /// Channels in the weights of a flight: 1 or kChannels.
+  /// Channels in the weights of a flight: 1, where one stands for all, 3 or 4.
   int channels() const { return channels_; }
   /// Channels in the weights of a transmittance: 1 where one extinction serves all.
   int transmittance_channels() const { return transmittance_channels_; }

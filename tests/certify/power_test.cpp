@@ -56,8 +56,8 @@ ChannelStatistics walk(const Mutant& mutant, const PlantedFactors& planted, uint
   FlightStream flights;
   WalkStatistics counts;
   for (int turn = 0; turn < kChannels / mutant.channels; ++turn) {
-    const MediumView view =
-        view_of(fixture(), Interpolation::kNearest, mutant.channels == 1 ? turn : -1);
+    const MediumView view = view_of(fixture(), Interpolation::kNearest,
+                                    channels_of(fixture(), mutant.channels == 1 ? turn : -1));
     for (uint64_t done = 0; done < paths; done += kBatch) {
       const std::size_t count = std::min<uint64_t>(kBatch, paths - done);
       RayStream rays =

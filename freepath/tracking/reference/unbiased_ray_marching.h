@@ -144,7 +144,7 @@ class UnbiasedRayMarching {
   double points_scale_;
   std::vector<double> series_weights_;
   std::vector<double> means_;
-  std::vector<double> estimates_[kChannels];
+  std::vector<double> estimates_[kMaxChannels];
 };
 
 }  // namespace freepath

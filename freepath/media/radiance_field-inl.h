@@ -1,0 +1,89 @@
+// Radiance that varies from place to place, in lanes: a trilinear look-up of a field and, for a
+// temperature, of the table of its radiance.
+
+#if defined(FREEPATH_MEDIA_RADIANCE_FIELD_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FREEPATH_MEDIA_RADIANCE_FIELD_INL_H_
+#undef FREEPATH_MEDIA_RADIANCE_FIELD_INL_H_
+#else
+#define FREEPATH_MEDIA_RADIANCE_FIELD_INL_H_
+#endif
+
+#include "freepath/base/lanes-inl.h"
+#include "freepath/media/medium_view.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace freepath::HWY_NAMESPACE {
+
+/// The trilinear interpolant of a field at points [walk space], 0 in lanes that do not look.
+HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[3], MaskF lanes) {
+  VecI voxel[2][3];
+  VecF weight[2][3];
+  for (int axis = 0; axis < 3; ++axis) {
+    VecF place = set(view.walk_to_voxels.offset[axis] - 0.5F);
+    for (int from = 0; from < 3; ++from) {
+      place = hn::MulAdd(point[from], set(view.walk_to_voxels.linear[from][axis]), place);
+    }
+    const float last = static_cast<float>(view.brick_counts[axis] * BrickMap::kBrickSize - 2);
+    // Maximum and minimum also keep idle lanes inside.
+    place = hn::IfThenElseZero(lanes, hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last)));
+    const VecF base = hn::Floor(place);
+    voxel[0][axis] = small_to_int(base);
+    voxel[1][axis] = hn::Add(voxel[0][axis], hn::Set(kInt, 1));
+    weight[1][axis] = hn::Sub(place, base);
+    weight[0][axis] = hn::Sub(set(1.0F), weight[1][axis]);
+  }
+  const auto* index = reinterpret_cast<const int32_t*>(view.index);
+  const VecI low = hn::Set(kInt, 7);
+  VecF sum = hn::Zero(kFloat);
+  for (int corner = 0; corner < 8; ++corner) {
+    const int cx = corner >> 2;
+    const int cy = corner >> 1 & 1;
+    const int cz = corner & 1;
+    const VecI& x = voxel[cx][0];
+    const VecI& y = voxel[cy][1];
+    const VecI& z = voxel[cz][2];
+    const VecI row = hn::Add(hn::Mul(hn::ShiftRight<3>(x), hn::Set(kInt, view.brick_counts[1])),
+                             hn::ShiftRight<3>(y));
+    const VecI entry =
+        hn::Add(hn::Mul(row, hn::Set(kInt, view.brick_counts[2])), hn::ShiftRight<3>(z));
+    const VecI within =
+        hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(x, low)), hn::ShiftLeft<3>(hn::And(y, low))),
+               hn::And(z, low));
+    const VecI address = hn::Or(hn::ShiftLeft<9>(hn::GatherIndex(kInt, index, entry)), within);
+    const VecF share = hn::Mul(hn::Mul(weight[cx][0], weight[cy][1]), weight[cz][2]);
+    sum = hn::MulAdd(share, hn::GatherIndex(kFloat, view.voxels, address), sum);
+  }
+  return hn::IfThenElseZero(lanes, sum);
+}
+
+/// The radiance that a field's value stands for.
+HWY_INLINE VecF radiance_of(const RadianceView& view, VecF value) {
+  if (view.table == nullptr) return value;
+  const VecF place = hn::Min(
+      hn::Max(hn::Mul(hn::Sub(value, set(view.first)), set(view.per_step)), hn::Zero(kFloat)),
+      set(view.last));
+  const VecF base = hn::Floor(hn::Min(place, set(view.last - 1)));
+  const VecI number = hn::ConvertTo(kInt, base);
+  const VecF before = hn::GatherIndex(kFloat, view.table, number);
+  const VecF after = hn::GatherIndex(kFloat, view.table, hn::Add(number, hn::Set(kInt, 1)));
+  return hn::MulAdd(hn::Sub(place, base), hn::Sub(after, before), before);
+}
+
+/// Radiances of N channels at points; channels that share a field share the look-up.
+template <int N>
+HWY_NOINLINE void radiance_at(const RadianceView* views, const VecF (&point)[3], MaskF lanes,
+                              VecF (&radiance)[N]) {
+  VecF value = hn::Zero(kFloat);
+  for (int channel = 0; channel < N; ++channel) {
+    const RadianceView& view = views[channel];
+    if (channel == 0 || view.voxels != views[channel - 1].voxels) {
+      value = interpolate_field(view, point, lanes);
+    }
+    radiance[channel] = radiance_of(view, value);
+  }
+}
+
+}  // namespace freepath::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // FREEPATH_MEDIA_RADIANCE_FIELD_INL_H_
