@@ -29,7 +29,7 @@ float largest_magnitude(const Spectrum& s) {
 }
 
 /// What a flight holds of each channel; one channel stands for all.
-Spectrum channels_of(const std::array<std::vector<float>, kChannels>& values, std::size_t slot,
+Spectrum channels_of(const std::array<std::vector<float>, kMaxChannels>& values, std::size_t slot,
                      int channels) {
   if (channels == 1) return Spectrum(values[0][slot]);
   return {values[0][slot], values[1][slot], values[2][slot]};

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -24,7 +25,9 @@ class SpectralDistribution {
   using Kind = std::variant<ConstantSpectrum, LinearSpectrum, BlackbodySpectrum, RgbSpectrum>;
 
   SpectralDistribution(double value = 0) : kind_(ConstantSpectrum{value}) {}
-  SpectralDistribution(Kind kind) : kind_(std::move(kind)) {}
+  template <class Spectrum>
+    requires std::is_constructible_v<Kind, Spectrum> && (!std::is_arithmetic_v<Spectrum>)
+  SpectralDistribution(Spectrum spectrum) : kind_(std::move(spectrum)) {}
 
   /// The value at a wavelength [nm].
   double operator()(double wavelength) const {

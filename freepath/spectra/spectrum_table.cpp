@@ -30,13 +30,14 @@ Channels to_channels(const std::array<double, kMaxChannels>& values) {
   return channels;
 }
 
+const RgbColorSpace& texture_space() { return rgb_color_space("srgb"); }
+
 }  // namespace
 
 SpectrumTable::SpectrumTable(const RgbColorSpace& space)
     : space_(space),
-      basis_{SpectralDistribution(RgbSpectrum::reflectance({1, 0, 0}, space)),
-             SpectralDistribution(0),
-             SpectralDistribution(RgbSpectrum::reflectance({0, 0, 1}, space))} {
+      red_(RgbSpectrum::reflectance({1, 0, 0}, texture_space())),
+      blue_(RgbSpectrum::reflectance({0, 0, 1}, texture_space())) {
   add(SpectralDistribution(0), SpectrumRole::kReflectance);
 }
 
@@ -75,7 +76,8 @@ SpectrumValues SpectrumTable::in_rgb() const {
   for (int i = 0; i < 3; ++i) {
     Vec3d unit(0);
     unit[i] = 1;
-    values.reflectance_basis_[i] = values.illuminant_basis_[i] = to_channels(unit);
+    values.reflectance_basis_[i] = values.illuminant_basis_[i] =
+        to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
     values.to_rgb_[i] = Vec3f(unit);
   }
   values.channels_ = 3;
@@ -88,13 +90,13 @@ SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
   for (const Entry& entry : entries_) {
     values.values_.push_back(to_channels(entry.spectrum.at(wavelengths.lambda)));
   }
-  const auto white = space_.illuminant();
+  const LinearSpectrum& white = texture_space().illuminant();
   for (int i = 0; i < kMaxChannels; ++i) {
     const double lambda = wavelengths.lambda[i];
     // Red and blue are smooth fits; green is what they leave of white, so that greys are constant
     // and every colour comes back exactly. It is below 0 only where nothing is seen.
-    const double red = basis_[0](lambda);
-    const double blue = basis_[2](lambda);
+    const double red = red_(lambda);
+    const double blue = blue_(lambda);
     const double green = std::max(0.0, 1 - red - blue);
     const double mix[3] = {red, green, blue};
     for (int c = 0; c < 3; ++c) {

@@ -37,9 +37,9 @@ class SpectrumValues {
  public:
   const Channels& operator[](SpectrumId id) const { return values_[id.index]; }
 
-  /// A colour of a texture as a reflectance or coefficient, by the three basis spectra below: what
-  /// it is in R, G, B comes back exactly. One multiplication per channel and component, where the
-  /// smooth fit (RgbSpectrum) would take microseconds.
+  /// A colour of a texture (sRGB's primaries, linear) as a reflectance or coefficient: a mixture of
+  /// three basis spectra, whose colour comes back exactly. One multiplication per channel and
+  /// component, where the smooth fit (RgbSpectrum) would take microseconds.
   Channels reflectance(const Vec3f& rgb) const { return mix(reflectance_basis_, rgb); }
   /// A colour of a texture as emitted light.
   Channels illuminant(const Vec3f& rgb) const { return mix(illuminant_basis_, rgb); }
@@ -76,7 +76,7 @@ class SpectrumValues {
 /// The spectra of a scene. Filled while the scene is built, then shared by all threads.
 class SpectrumTable {
  public:
-  /// @param space of the film, and of the colours that textures hold
+  /// @param space of the film
   explicit SpectrumTable(const RgbColorSpace& space);
 
   SpectrumId add(const SpectralDistribution& spectrum, SpectrumRole role);
@@ -103,7 +103,7 @@ class SpectrumTable {
 
   const RgbColorSpace& space_;
   std::vector<Entry> entries_;
-  std::array<SpectralDistribution, 3> basis_;  // of red and blue; green follows from them
+  RgbSpectrum red_, blue_;  // of textures; green follows from them
 };
 
 }  // namespace freepath
