@@ -26,8 +26,9 @@ class SpectralDistribution {
 
   SpectralDistribution(double value = 0) : kind_(ConstantSpectrum{value}) {}
   template <class Spectrum>
-    requires std::is_constructible_v<Kind, Spectrum> && (!std::is_arithmetic_v<Spectrum>)
-  SpectralDistribution(Spectrum spectrum) : kind_(std::move(spectrum)) {}
+  requires std::is_constructible_v<Kind, Spectrum> &&
+      (!std::is_arithmetic_v<Spectrum>)SpectralDistribution(Spectrum spectrum)
+      : kind_(std::move(spectrum)) {}
 
   /// The value at a wavelength [nm].
   double operator()(double wavelength) const {

@@ -30,6 +30,18 @@ Channels to_channels(const std::array<double, kMaxChannels>& values) {
   return channels;
 }
 
+Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
+                const RgbColorSpace& space) {
+  if (role == SpectrumRole::kIndex) return Channels(static_cast<float>(spectrum(kSodiumLine)));
+  if (std::holds_alternative<ConstantSpectrum>(spectrum.kind()) &&
+      role == SpectrumRole::kReflectance) {
+    const auto value = static_cast<float>(spectrum(kSodiumLine));
+    return {value, value, value};
+  }
+  return to_channels(role == SpectrumRole::kReflectance ? reflected_rgb(spectrum, space)
+                                                        : space.from_xyz(observe(spectrum)));
+}
+
 const RgbColorSpace& texture_space() { return rgb_color_space("srgb"); }
 
 }  // namespace
@@ -41,19 +53,14 @@ SpectrumTable::SpectrumTable(const RgbColorSpace& space)
   add(SpectralDistribution(0), SpectrumRole::kReflectance);
 }
 
-Channels SpectrumTable::rgb_of(const SpectralDistribution& spectrum, SpectrumRole role) const {
-  if (role == SpectrumRole::kIndex) return Channels(static_cast<float>(spectrum(kSodiumLine)));
-  if (std::holds_alternative<ConstantSpectrum>(spectrum.kind()) &&
-      role == SpectrumRole::kReflectance) {
-    const auto value = static_cast<float>(spectrum(kSodiumLine));
-    return {value, value, value};
-  }
-  return to_channels(role == SpectrumRole::kReflectance ? reflected_rgb(spectrum, space_)
-                                                        : space_.from_xyz(observe(spectrum)));
+float SpectrumValues::value_of(const SpectralDistribution& spectrum, SpectrumRole role,
+                               int channel) const {
+  if (channels_ == kMaxChannels) return static_cast<float>(spectrum(wavelengths_[channel]));
+  return rgb_of(spectrum, role, *space_)[channel];
 }
 
 SpectrumId SpectrumTable::add(const SpectralDistribution& spectrum, SpectrumRole role) {
-  entries_.push_back({spectrum, role, rgb_of(spectrum, role)});
+  entries_.push_back({spectrum, role, rgb_of(spectrum, role, space_)});
   return {static_cast<uint32_t>(entries_.size() - 1)};
 }
 
@@ -81,6 +88,7 @@ SpectrumValues SpectrumTable::in_rgb() const {
     values.to_rgb_[i] = Vec3f(unit);
   }
   values.channels_ = 3;
+  values.space_ = &space_;
   return values;
 }
 
@@ -94,10 +102,10 @@ SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
   for (int i = 0; i < kMaxChannels; ++i) {
     const double lambda = wavelengths.lambda[i];
     // Red and blue are smooth fits; green is what they leave of white, so that greys are constant
-    // and every colour comes back exactly. It is below 0 only where nothing is seen.
+    // and every colour comes back exactly. It falls to -0.03 where little is seen, near 420 nm.
     const double red = red_(lambda);
     const double blue = blue_(lambda);
-    const double green = std::max(0.0, 1 - red - blue);
+    const double green = 1 - red - blue;
     const double mix[3] = {red, green, blue};
     for (int c = 0; c < 3; ++c) {
       values.reflectance_basis_[c][i] = static_cast<float>(mix[c]);
@@ -109,6 +117,7 @@ SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
   }
   values.wavelengths_ = wavelengths.lambda;
   values.channels_ = kMaxChannels;
+  values.space_ = &space_;
   return values;
 }
 

@@ -55,6 +55,11 @@ class SpectrumValues {
     return rgb;
   }
 
+  /// One channel of a spectrum that is in no table.
+  float value_of(const SpectralDistribution& spectrum, SpectrumRole role, int channel) const;
+  /// R, G, B of the table's space.
+  Vec3d rgb_of_xyz(const Vec3d& xyz) const { return space_->from_xyz(xyz); }
+
   /// Wavelengths of the channels [nm]; all 0 of R, G, B.
   const std::array<double, kMaxChannels>& wavelengths() const { return wavelengths_; }
 
@@ -71,6 +76,7 @@ class SpectrumValues {
   std::array<Vec3f, kMaxChannels> to_rgb_;
   std::array<double, kMaxChannels> wavelengths_{};
   int channels_ = 3;
+  const RgbColorSpace* space_ = nullptr;
 };
 
 /// The spectra of a scene. Filled while the scene is built, then shared by all threads.
@@ -98,8 +104,6 @@ class SpectrumTable {
     SpectrumRole role = SpectrumRole::kReflectance;
     Channels rgb;
   };
-
-  Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role) const;
 
   const RgbColorSpace& space_;
   std::vector<Entry> entries_;

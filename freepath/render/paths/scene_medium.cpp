@@ -1,0 +1,203 @@
+#include "freepath/render/paths/scene_medium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "freepath/base/error.h"
+#include "freepath/spectra/blackbody.h"
+#include "freepath/spectra/cie_observer.h"
+
+namespace freepath {
+namespace {
+
+/// Below this a black body of the scene language emits nothing [K].
+constexpr double kCoolest = 100;
+
+/// Steps of a table of thermal radiance: at 1500 K a step of 2 K changes violet, the steepest, by
+/// 3 %, so that a straight line is off by 1e-4.
+constexpr double kTableStep = 2;             // [K]
+constexpr std::size_t kLargestTable = 8192;  // values, beyond which steps grow
+
+/// Pbrt's films do not divide by the integral of the luminous efficiency, and lights are normalised
+/// for it; emission in media is not.
+constexpr double kMediumRadiance = kLuminousIntegral;
+
+struct Range {
+  float low = 0, high = 0;
+};
+
+Range range_of(const Field& field) {
+  Range range;
+  for (const float value : field.voxels.voxels()) {
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+Channels thermal_radiance(double temperature, const SpectrumValues& spectra) {
+  Channels radiance;
+  if (!(temperature > kCoolest)) return radiance;
+  const BlackbodySpectrum body(temperature, BlackbodyScale::kPeak);
+  if (spectra.channels() == kMaxChannels) {
+    for (int i = 0; i < kMaxChannels; ++i) {
+      radiance[i] = static_cast<float>(kMediumRadiance * body(spectra.wavelengths()[i]));
+    }
+    return radiance;
+  }
+  const Vec3d rgb = spectra.rgb_of_xyz(observe(body)) * kMediumRadiance;
+  return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
+}
+
+/// The tables of the channels' radiance by the field's value.
+void set_temperature(const TemperatureEmission& emission, const SpectrumValues& spectra,
+                     ComponentChannels& target) {
+  const Range range = range_of(*emission.field);
+  const auto temperature = [&](double value) { return (value - emission.offset) * emission.scale; };
+  const double hottest = std::max(temperature(range.low), temperature(range.high));
+  if (!(hottest > kCoolest)) return;
+  const auto nodes = std::clamp(static_cast<std::size_t>(hottest / kTableStep) + 2, std::size_t{16},
+                                kLargestTable);
+  const float step = (range.high - range.low) / static_cast<float>(nodes - 1);
+  std::array<std::vector<float>, kMaxChannels> tables;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const double value = range.low + static_cast<double>(step) * static_cast<double>(i);
+    const Channels radiance = thermal_radiance(temperature(value), spectra);
+    for (int c = 0; c < kMaxChannels; ++c) tables[c].push_back(radiance[c]);
+  }
+  for (int c = 0; c < kMaxChannels; ++c) {
+    target.radiance[c] = {emission.field,
+                          std::make_shared<const std::vector<float>>(std::move(tables[c])),
+                          range.low, step};
+    target.emission[c] = 1;
+  }
+}
+
+/// One number for each voxel, x fastest, as a field.
+template <class Value>
+std::shared_ptr<const Field> make_voxels(const ColorVoxels& colors, const std::string& name,
+                                         const Value& value_of) {
+  BrickMapBuilder builder(Vec3i(0), colors.counts - Vec3i(1), 0);
+  std::size_t i = 0;
+  for (int z = 0; z < colors.counts.z; ++z) {
+    for (int y = 0; y < colors.counts.y; ++y) {
+      for (int x = 0; x < colors.counts.x; ++x, ++i) {
+        builder.set_voxel(Vec3i(x, y, z), value_of(i));
+      }
+    }
+  }
+  auto field = std::make_shared<Field>();
+  field->name = name;
+  field->voxels = std::move(builder).finish();
+  field->index_to_world = colors.index_to_world;
+  return field;
+}
+
+}  // namespace
+
+SceneMedium::SceneMedium(std::string name, std::shared_ptr<const Medium> medium,
+                         std::vector<SceneMediumComponent> components)
+    : name_(std::move(name)), medium_(std::move(medium)), components_(std::move(components)) {
+  for (const SceneMediumComponent& component : components_) phases_.push_back(component.phase);
+  bounds_ = medium_->world_bounds();
+}
+
+SceneMedium::SceneMedium(std::string name, std::shared_ptr<const ColorVoxels> voxels)
+    : name_(std::move(name)), colors_(std::move(voxels)), phases_{colors_->phase} {
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d point;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = (corner >> axis & 1) != 0 ? colors_->counts[axis] - 0.5 : -0.5;
+    }
+    bounds_.extendBy(point * colors_->index_to_world);
+  }
+}
+
+BoundMedium SceneMedium::bind(const SpectrumValues& spectra) const {
+  if (colors_) return bind_colors(spectra);
+  BoundMedium bound{medium_, {}};
+  bound.channels.count = spectra.channels();
+  for (const SceneMediumComponent& component : components_) {
+    ComponentChannels& target = bound.channels.components.emplace_back();
+    for (int c = 0; c < spectra.channels(); ++c) {
+      target.sigma_a[c] = std::max(0.0F, spectra[component.sigma_a][c] * component.scale);
+      target.sigma_s[c] = std::max(0.0F, spectra[component.sigma_s][c] * component.scale);
+      target.emission[c] =
+          std::max(0.0F, spectra[component.radiance][c]) * component.radiance_scale;
+      target.radiance[c].field = component.radiance_field;
+    }
+    if (component.temperature) {
+      set_temperature(*component.temperature, spectra, target);
+      for (float& emission : target.emission) emission *= component.radiance_scale;
+    }
+  }
+  return bound;
+}
+
+BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
+  const ColorVoxels& colors = *colors_;
+  BoundMedium bound;
+  bound.channels.count = spectra.channels();
+  std::vector<Component> components;
+  const auto value_of = [&](const std::vector<RgbSpectrum>& values, SpectrumRole role) {
+    return [&values, &spectra, role](int channel) {
+      return [&values, &spectra, role, channel](std::size_t i) {
+        return std::max(0.0F, spectra.value_of(values[i], role, channel));
+      };
+    };
+  };
+  for (const bool scatters : {false, true}) {
+    const std::vector<RgbSpectrum>& sigma = scatters ? colors.sigma_s : colors.sigma_a;
+    if (sigma.empty()) continue;
+    for (int c = 0; c < spectra.channels(); ++c) {
+      Component component;
+      component.density =
+          make_voxels(colors, name_, value_of(sigma, SpectrumRole::kReflectance)(c));
+      component.sigma_a = Spectrum(scatters ? 0.0F : colors.scale);
+      component.sigma_s = Spectrum(scatters ? colors.scale : 0.0F);
+      components.push_back(component);
+      ComponentChannels& target = bound.channels.components.emplace_back();
+      (scatters ? target.sigma_s : target.sigma_a)[c] = colors.scale;
+      if (scatters || colors.radiance.empty()) continue;
+      const auto radiance =
+          make_voxels(colors, name_, value_of(colors.radiance, SpectrumRole::kIlluminant)(c));
+      for (RadianceField& field : target.radiance) field.field = radiance;
+      target.emission[c] = colors.radiance_scale * static_cast<float>(kMediumRadiance);
+    }
+  }
+  bound.medium = std::make_shared<const Medium>(std::move(components));
+  return bound;
+}
+
+Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {
+  if (components_.empty()) return Channels(1.0F);
+  const SceneMediumComponent& values = components_[std::min(component, components_.size() - 1)];
+  Channels albedo;
+  for (int c = 0; c < spectra.channels(); ++c) {
+    const float sigma_s = spectra[values.sigma_s][c];
+    const float sigma_t = sigma_s + spectra[values.sigma_a][c];
+    albedo[c] = sigma_t > 0 ? sigma_s / sigma_t : 0;
+  }
+  return albedo;
+}
+
+std::shared_ptr<const Medium> make_homogeneous_medium(const std::string& name, const Box3d& box,
+                                                      float largest_sigma_t) {
+  BrickMapBuilder builder(Vec3i(0), Vec3i(0), 0);
+  builder.set_voxel(Vec3i(0), 1.0F);
+  auto field = std::make_shared<Field>();
+  field->name = name;
+  field->voxels = std::move(builder).finish();
+  const Vec3d size = box.size();
+  field->index_to_world.setScale(size);
+  field->index_to_world[3][0] = box.center().x;
+  field->index_to_world[3][1] = box.center().y;
+  field->index_to_world[3][2] = box.center().z;
+  Component component;
+  component.density = field;
+  component.sigma_s = Spectrum(largest_sigma_t);
+  return std::make_shared<const Medium>(std::vector<Component>{component});
+}
+
+}  // namespace freepath
