@@ -11,7 +11,8 @@
 namespace freepath {
 
 /// The unit vector at an angle θ from a unit axis, turned around it by u2 of a full circle.
-/// @param h sin²(θ/2) = (1 - cos θ) / 2, which keeps its digits at the axis where the cosine doesn't
+/// @param h sin²(θ/2) = (1 - cos θ) / 2, which keeps its digits at the axis where the cosine
+/// doesn't
 inline Vec3f direction_around(const Vec3f& axis, double h, float u2) {
   const auto sine = static_cast<float>(2.0 * std::sqrt(std::max(0.0, h * (1.0 - h))));
   const auto cosine = static_cast<float>(1.0 - 2.0 * h);

@@ -24,12 +24,13 @@ float Draine::mean_cosine() const {
 
 // The distribution function leads to a quartic with a closed solution [Jendersie23]. As published,
 // in w = √(1 + g² - 2 g cosine), three of its roots meet at w = 1 as g goes to 0, and the result
-// is divided by g. Here w = 1 - g v: v runs from -1 to 1 with the cosine, cosine = v + g (1 - v²)/2,
-// and the integral of the density over v is proportional to
+// is divided by g. Here w = 1 - g v: v runs from -1 to 1 with the cosine, cosine = v + g (1 -
+// v²)/2, and the integral of the density over v is proportional to
 //
 //     F(v) = (v + alpha (4 v³ + g (3 + 6 v² - v⁴)) / 12) / (1 - g v).
 //
-// F(v) = t with k = 12 / alpha becomes a depressed quartic in w; its resolvent z³ - 12 (1 + g²) z² +
+// F(v) = t with k = 12 / alpha becomes a depressed quartic in w; its resolvent z³ - 12 (1 + g²) z²
+// +
 // ..., in y with z = 4 (1 + g²) + g y, is a rising cubic that keeps its form down to g = 0. The two
 // real roots of the quartic have the sum -√z; the larger one is w. Both square roots are taken as
 // 1 + g times something, so that g cancels by hand.
@@ -46,12 +47,14 @@ double Draine::quantile(double u) const {
   if (constexpr double kSmallestAlpha = 1e-7; a > kSmallestAlpha) {
     const double k = 12.0 / a;
     const double b = 1.0 + g * t;
-    const double constant = g * (48.0 + 64.0 * g2 - 8.0 * k - k * k * b * b) - 8.0 * k * t * (2.0 + 3.0 * g2);
+    const double constant =
+        g * (48.0 + 64.0 * g2 - 8.0 * k - k * k * b * b) - 8.0 * k * t * (2.0 + 3.0 * g2);
     const double y = solve_rising_cubic(4.0 / 3.0 * k, -0.5 * constant);
     // √z = 2 (1 + g half_sum), and the root of the discriminant is 4 (1 + g half_difference).
     const double excess = g + 0.25 * y;
     const double half_sum = excess / (1.0 + std::sqrt(std::max(0.0, 1.0 + g * excess)));
-    const double rest = (8.0 * g - y + (g * (12.0 + k * b) - 8.0 * half_sum) / (1.0 + g * half_sum)) / 16.0;
+    const double rest =
+        (8.0 * g - y + (g * (12.0 + k * b) - 8.0 * half_sum) / (1.0 + g * half_sum)) / 16.0;
     const double half_difference = rest / (1.0 + std::sqrt(std::max(0.0, 1.0 + g * rest)));
     v = half_sum - 2.0 * half_difference;
   }
