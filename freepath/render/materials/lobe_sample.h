@@ -1,0 +1,44 @@
+#pragma once
+/// @file What lobes of materials give, in the frame of the surface: z is the normal, `out` points
+/// to where a path came from, the sampled direction to where it goes on.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "freepath/base/channels.h"
+#include "freepath/base/random.h"
+#include "freepath/base/vector.h"
+
+namespace freepath {
+
+/// A direction drawn by a lobe.
+struct LobeSample {
+  Vec3f direction;
+  Channels weight;         ///< f |cosine| / density
+  float pdf = 0;           ///< [1/sr]; 0 of a specular event.
+  bool specular = false;   ///< The direction had no choice.
+  bool hero_only = false;  ///< Only the hero channel is left.
+};
+
+/// The value of lobes for two directions.
+struct MaterialValue {
+  Channels value;  ///< f |cosine| of the direction that follows [1/sr]
+  float pdf = 0;   ///< Of sampling that direction [1/sr].
+};
+
+inline bool same_hemisphere(const Vec3f& a, const Vec3f& b) { return a.z * b.z > 0; }
+
+/// A direction with the density |z| / π on the side of +z: the projection of a point of a disk.
+inline Vec3f sample_cosine_hemisphere(RandomStream& random) {
+  const float radius2 = random.uniform();
+  const float azimuth = 2.0F * std::numbers::pi_v<float> * random.uniform();
+  const float radius = std::sqrt(radius2);
+  return {radius * std::cos(azimuth), radius * std::sin(azimuth), std::sqrt(1.0F - radius2)};
+}
+
+inline float cosine_hemisphere_pdf(float cosine) {
+  return std::abs(cosine) * std::numbers::inv_pi_v<float>;
+}
+
+}  // namespace freepath

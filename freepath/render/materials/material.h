@@ -1,0 +1,80 @@
+#pragma once
+/// @file How a surface scatters light.
+
+#include <optional>
+#include <variant>
+
+#include "freepath/base/channels.h"
+#include "freepath/base/random.h"
+#include "freepath/base/vector.h"
+#include "freepath/render/materials/material_kinds.h"
+#include "freepath/render/materials/surface_context.h"
+#include "freepath/render/surfaces/surface_point.h"
+
+namespace freepath {
+
+/// A direction that a path goes on in.
+struct MaterialSample {
+  Vec3f direction;  ///< Of travel, unit [world].
+  /// f |cosine| / density. With hero_only it is 0 in all channels but the hero's, where
+  /// SurfaceContext::hero_factor is in it.
+  Channels weight;
+  float pdf = 0;             ///< [1/sr]; 0 of a specular event, which no evaluate() covers.
+  bool specular = false;     ///< The direction had no choice.
+  bool transmitted = false;  ///< To the other side of the surface.
+  bool hero_only = false;    ///< From here on SurfaceContext::only_hero is true.
+};
+
+/// A material of a scene. Shared by all threads.
+///
+/// Radiance is what paths carry: a refraction divides it by the square of the relative refractive
+/// index. Which side of the surface a direction lies on, the geometric normal decides; directions
+/// that the shading normal puts on another side carry nothing, so that no light leaks through.
+/// Where the shading normal turns away from a path that comes from the front, the geometric one
+/// takes its place.
+///
+/// Layered materials evaluate themselves by random walks: a value is an unbiased estimate, and the
+/// pdf, which is then no density of what sample() draws, serves only as a weight between the two
+/// techniques. It is the same in sample() and evaluate(), hence those weights sum to 1.
+class Material {
+ public:
+  using Kind =
+      std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
+                   CoatedDiffuseMaterial, CoatedConductorMaterial, MixMaterial>;
+
+  /// @throws Error if a mix lacks a material, or a coating has no walks or interactions
+  Material(Kind kind);
+
+  /// Draws where a path goes on; nothing if it ends.
+  /// @param travel direction of travel before, unit [world]
+  std::optional<MaterialSample> sample(const SurfacePoint& point, const Vec3f& travel,
+                                       RandomStream& random, const SurfaceContext& context) const;
+
+  /// Value and density for two directions of travel; 0 of specular events. A channel-parting
+  /// refraction has a value in the hero's channel only, hero_factor included.
+  MaterialValue evaluate(const SurfacePoint& point, const Vec3f& travel, const Vec3f& next,
+                         RandomStream& random, const SurfaceContext& context) const;
+
+  /// Whether evaluate() is 0 everywhere.
+  bool is_specular() const;
+  /// Whether any path goes on to the other side.
+  bool transmits() const;
+
+  /// The share of light that is scattered, for pictures of it: exact for diffuse, smooth and
+  /// thin ones, else an approximation that leaves roughness and the medium of a coating out. The
+  /// radiance scale of refraction is not in it.
+  Channels albedo(const SurfacePoint& point, const Vec3f& travel,
+                  const SurfaceContext& context) const;
+
+  const Kind& kind() const { return kind_; }
+
+ private:
+  /// The one that a mix chooses, itself for others: by a hash of place and direction, so that
+  /// sample() and evaluate() at a hit agree.
+  const Material& resolved(const SurfacePoint& point, const Vec3f& travel,
+                           const SurfaceContext& context) const;
+
+  Kind kind_;
+};
+
+}  // namespace freepath
