@@ -1,0 +1,28 @@
+#pragma once
+/// @file An affine map in double precision, cheaper to apply than a 4x4 matrix.
+
+#include "freepath/base/vector.h"
+
+namespace freepath {
+
+/// A point is a row: p.x * x + p.y * y + p.z * z + translation.
+struct AffineMap {
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Vec3d translation{0, 0, 0};
+
+  AffineMap() = default;
+  explicit AffineMap(const Matrix4d& m)
+      : x(m[0][0], m[0][1], m[0][2]),
+        y(m[1][0], m[1][1], m[1][2]),
+        z(m[2][0], m[2][1], m[2][2]),
+        translation(m[3][0], m[3][1], m[3][2]) {}
+
+  Vec3d point(const Vec3d& p) const { return x * p.x + y * p.y + z * p.z + translation; }
+  Vec3d vector(const Vec3d& v) const { return x * v.x + y * v.y + z * v.z; }
+  /// Of the map from A to B: takes a normal of B to A. Not normalised.
+  Vec3d normal_back(const Vec3d& n) const { return {x.dot(n), y.dot(n), z.dot(n)}; }
+  /// Negative where the map swaps handedness.
+  double determinant() const { return x.dot(y.cross(z)); }
+};
+
+}  // namespace freepath

@@ -1,0 +1,308 @@
+#include "freepath/render/surfaces/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/render/surfaces/box_overlap.h"
+#include "freepath/render/surfaces/traced_part.h"
+
+namespace freepath {
+
+namespace {
+
+Vec3d middle(std::span<const SurfaceShape> shapes) {
+  const TracedPart part(shapes, Vec3d(0));
+  Box3d box;
+  for (const auto& mesh : part.triangles) box.extendBy(mesh.bounds());
+  for (const auto& mesh : part.patches) box.extendBy(mesh.bounds());
+  for (const auto& quadric : part.quadrics) box.extendBy(quadric.bounds());
+  return box.isEmpty() ? Vec3d(0) : box.center();
+}
+
+void check_all(std::span<const SurfaceShape> shapes) {
+  for (const SurfaceShape& shape : shapes) {
+    try {
+      check(shape);
+    } catch (const Error& error) {
+      fail("shape {}: {}", shape.shape, error.what());
+    }
+  }
+}
+
+}  // namespace
+
+void BoundaryCrossings::clear() {
+  count_ = 0;
+  overflowed_ = false;
+}
+
+void BoundaryCrossings::add(const BoundaryCrossing& crossing) {
+  // Two triangles that share an edge may both claim a ray through it.
+  constexpr float kSamePlace = 1e-6F;
+  const auto is_same = [&](const BoundaryCrossing& other) {
+    return other.shape == crossing.shape && other.instance == crossing.instance &&
+           other.enters == crossing.enters &&
+           std::abs(other.t - crossing.t) <= kSamePlace * crossing.t;
+  };
+  BoundaryCrossing* const end = crossings_.data() + count_;
+  BoundaryCrossing* const place =
+      std::upper_bound(crossings_.data(), end, crossing.t,
+                       [](float t, const BoundaryCrossing& other) { return t < other.t; });
+  if (place != crossings_.data() && is_same(*(place - 1))) return;
+  if (place != end && is_same(*place)) return;
+  if (count_ < kCapacity) {
+    std::move_backward(place, end, end + 1);
+    ++count_;
+  } else {
+    overflowed_ = true;
+    if (place == end) return;
+    std::move_backward(place, end - 1, end);
+  }
+  *place = crossing;
+}
+
+class Surfaces::Data {
+ public:
+  Data(const SurfaceScene& scene, const Vec3d& ray_origin);
+
+  SurfaceQuery query(QueryKind kind, const Vec3f& origin, const Vec3f& direction,
+                     float t_min) const;
+  static RTCRay ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max);
+  SurfaceHit describe(const RTCRayHit& found, const LocalRay& ray) const;
+
+  Vec3d origin;
+  DeviceHandle device;
+  // Parts stay where they are: the scenes refer to their insides. They outlive the scenes.
+  std::unique_ptr<const TracedPart> world;
+  std::vector<std::unique_ptr<const TracedPart>> groups;
+  std::vector<TracedInstance> instances;
+  std::vector<float> smallest_offset;  // by SurfaceShape::shape
+  std::vector<SceneHandle> group_scenes;
+  SceneHandle scene;
+
+ private:
+  void add_instances(const SurfaceScene& scene);
+  void note_offsets(const TracedPart& part, const AffineMap& to_world);
+  void note_offset(const TracedShape& shape, const Box3d& box, const AffineMap& to_world);
+  SceneHandle new_scene() const;
+};
+
+SceneHandle Surfaces::Data::new_scene() const {
+  SceneHandle made(rtcNewScene(device.get()));
+  rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST);
+  return made;
+}
+
+Surfaces::Data::Data(const SurfaceScene& description, const Vec3d& ray_origin)
+    : origin(ray_origin), device(rtcNewDevice(nullptr)) {
+  if (!device) check_device(nullptr);
+  check_all(description.shapes);
+  for (const auto& group : description.groups) check_all(group);
+  world = std::make_unique<TracedPart>(description.shapes, origin);
+  scene = new_scene();
+  world->attach(device.get(), scene.get());
+  note_offsets(*world, AffineMap());
+  for (const auto& group : description.groups) {
+    groups.push_back(std::make_unique<TracedPart>(group, middle(group)));
+    group_scenes.push_back(new_scene());
+    groups.back()->attach(device.get(), group_scenes.back().get());
+    rtcCommitScene(group_scenes.back().get());
+  }
+  add_instances(description);
+  rtcCommitScene(scene.get());
+  check_device(device.get());
+}
+
+void Surfaces::Data::add_instances(const SurfaceScene& description) {
+  unsigned number = world->geometry_count();
+  for (const SurfaceInstance& instance : description.instances) {
+    if (instance.group >= groups.size()) {
+      fail("instance {} is of group {}, but there are only {} groups", instances.size(),
+           instance.group, groups.size());
+    }
+    Matrix4d from_middle, to_origin;
+    from_middle.setTranslation(groups[instance.group]->origin);
+    to_origin.setTranslation(-origin);
+    const Matrix4d matrix = from_middle * instance.instance_to_world * to_origin;
+    if (!(std::abs(matrix.determinant()) > 0)) {
+      fail("the transform of instance {} has no inverse; scale by nothing but 0",
+           instances.size());
+    }
+    instances.push_back({instance.group, AffineMap(matrix), AffineMap(matrix.inverse())});
+    const AffineMap& map = instances.back().part_to_world;
+    note_offsets(*groups[instance.group], map);
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, group_scenes[instance.group].get());
+    std::array<float, 12> columns{};
+    const std::array<Vec3d, 4> rows = {map.x, map.y, map.z, map.translation};
+    for (int i = 0; i < 12; ++i) columns[i] = static_cast<float>(rows[i / 3][i % 3]);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene.get(), geometry, number++);
+    rtcReleaseGeometry(geometry);
+  }
+}
+
+void Surfaces::Data::note_offsets(const TracedPart& part, const AffineMap& to_world) {
+  for (const auto& mesh : part.triangles) note_offset(mesh, mesh.bounds(), to_world);
+  for (const auto& mesh : part.patches) note_offset(mesh, mesh.bounds(), to_world);
+  for (const auto& quadric : part.quadrics) note_offset(quadric, quadric.bounds(), to_world);
+}
+
+void Surfaces::Data::note_offset(const TracedShape& shape, const Box3d& box,
+                                 const AffineMap& to_world) {
+  // Many roundings of doubles of this size.
+  constexpr double kRoundings = 0x1p-42;
+  double largest = std::max({std::abs(to_world.translation.x), std::abs(to_world.translation.y),
+                             std::abs(to_world.translation.z)});
+  for (const Vec3d& corner : corners_of(box)) {
+    const Vec3d p = to_world.point(corner);
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  if (shape.shape >= smallest_offset.size()) smallest_offset.resize(shape.shape + std::size_t{1});
+  float& offset = smallest_offset[shape.shape];
+  offset = std::max(offset, static_cast<float>(largest * kRoundings));
+}
+
+SurfaceQuery Surfaces::Data::query(QueryKind kind, const Vec3f& ray_origin,
+                                   const Vec3f& direction, float t_min) const {
+  SurfaceQuery query{};
+  rtcInitIntersectContext(&query.context);
+  query.kind = kind;
+  query.ray = {Vec3d(ray_origin), Vec3d(direction)};
+  query.t_min = t_min;
+  query.instances = instances;
+  query.first_instance = world->geometry_count();
+  return query;
+}
+
+RTCRay Surfaces::Data::ray(const Vec3f& ray_origin, const Vec3f& direction, float t_min,
+                           float t_max) {
+  RTCRay ray{};
+  ray.org_x = ray_origin.x;
+  ray.org_y = ray_origin.y;
+  ray.org_z = ray_origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = t_min;
+  ray.tfar = t_max;
+  ray.mask = ~0U;
+  return ray;
+}
+
+SurfaceHit Surfaces::Data::describe(const RTCRayHit& found, const LocalRay& ray) const {
+  SurfaceHit hit;
+  TracedPart::Found at{};
+  if (found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    at = world->find(found.hit, found.ray.tfar, ray);
+  } else {
+    hit.instance = found.hit.instID[0] - world->geometry_count();
+    const TracedInstance& instance = instances[hit.instance];
+    const LocalRay local{instance.world_to_part.point(ray.origin),
+                         instance.world_to_part.vector(ray.direction)};
+    at = groups[instance.group]->find(found.hit, found.ray.tfar, local);
+    at.point.position = instance.part_to_world.point(at.point.position);
+    at.point.normal = instance.world_to_part.normal_back(at.point.normal);
+    at.point.shading_normal = instance.world_to_part.normal_back(at.point.shading_normal);
+    at.point.dpdu = instance.part_to_world.vector(at.point.dpdu);
+  }
+  const LocalPoint& p = at.point;
+  const double across = p.normal.dot(ray.direction);
+  hit.from_inside = across > 0;
+  hit.t = static_cast<float>((p.position - ray.origin).dot(ray.direction) /
+                             ray.direction.length2());
+  hit.point.position = Vec3f(p.position);
+  hit.point.normal = Vec3f(p.normal.normalized());
+  const bool flip = p.shading_normal.dot(p.normal) < 0;
+  hit.point.shading_normal = Vec3f((flip ? -p.shading_normal : p.shading_normal).normalized());
+  hit.point.dpdu = Vec3f(p.dpdu);
+  hit.point.u = p.uv.x;
+  hit.point.v = p.uv.y;
+  hit.point.shape = at.shape->shape;
+  const bool is_quadric =
+      found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID
+          ? world->is_quadric(found.hit.geomID)
+          : groups[instances[hit.instance].group]->is_quadric(found.hit.geomID);
+  hit.point.primitive = at.shape->first_primitive + (is_quadric ? 0 : found.hit.primID);
+  return hit;
+}
+
+Surfaces::Surfaces(const SurfaceScene& scene, const Vec3d& origin)
+    : data_(std::make_unique<const Data>(scene, origin)) {}
+Surfaces::~Surfaces() = default;
+Surfaces::Surfaces(Surfaces&&) noexcept = default;
+Surfaces& Surfaces::operator=(Surfaces&&) noexcept = default;
+
+const Vec3d& Surfaces::origin() const { return data_->origin; }
+
+Box3f Surfaces::bounds() const {
+  RTCBounds b;
+  rtcGetSceneBounds(data_->scene.get(), &b);
+  if (!(b.lower_x <= b.upper_x)) return {};
+  return {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+}
+
+std::optional<SurfaceHit> Surfaces::intersect(const Vec3f& origin, const Vec3f& direction,
+                                              float t_min, float t_max) const {
+  SurfaceQuery query = data_->query(QueryKind::kNearest, origin, direction, t_min);
+  RTCRayHit found{};
+  found.ray = Data::ray(origin, direction, t_min, t_max);
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(data_->scene.get(), &query.context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  return data_->describe(found, query.ray);
+}
+
+bool Surfaces::occluded(const Vec3f& origin, const Vec3f& direction, float t_max,
+                        BoundaryCrossings& crossings) const {
+  crossings.clear();
+  SurfaceQuery query = data_->query(QueryKind::kOcclusion, origin, direction, 0);
+  query.crossings = &crossings;
+  RTCRay ray = Data::ray(origin, direction, 0, t_max);
+  rtcOccluded1(data_->scene.get(), &query.context, &ray);
+  return ray.tfar < 0;
+}
+
+Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direction) const {
+  // Half a rounding for the position, half a one for the new origin, and as much to spare.
+  constexpr float kRoundings = 4 * 0x1p-24F;
+  const Vec3f& n = point.normal;
+  const Vec3f& p = point.position;
+  const float error =
+      std::abs(n.x * p.x) + std::abs(n.y * p.y) + std::abs(n.z * p.z);
+  const float offset = kRoundings * error + data_->smallest_offset[point.shape];
+  return p + n * (n.dot(direction) < 0 ? -offset : offset);
+}
+
+bool Surfaces::intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const {
+  const Box3d relative(box.min - data_->origin, box.max - data_->origin);
+  if (part_meets_box(*data_->world, AffineMap(), AffineMap(), shapes, relative)) return true;
+  return std::any_of(
+      data_->instances.begin(), data_->instances.end(), [&](const TracedInstance& instance) {
+        return part_meets_box(*data_->groups[instance.group], instance.part_to_world,
+                              instance.world_to_part, shapes, relative);
+      });
+}
+
+bool Surfaces::is_inside(const Vec3f& point, std::span<const uint32_t> shapes) const {
+  // Along no edge of anything that is built along axes or diagonals.
+  static const std::array<Vec3f, 3> kDirections = {
+      Vec3f(0.5377F, 0.6211F, 0.5703F), Vec3f(-0.7321F, 0.3187F, -0.6021F),
+      Vec3f(0.2239F, -0.8623F, -0.4541F)};
+  int votes = 0;
+  for (const Vec3f& direction : kDirections) {
+    SurfaceQuery query = data_->query(QueryKind::kCount, point, direction, 0);
+    query.counted = shapes;
+    RTCRay ray = Data::ray(point, direction, 0, std::numeric_limits<float>::infinity());
+    rtcOccluded1(data_->scene.get(), &query.context, &ray);
+    votes += static_cast<int>(query.count % 2);
+  }
+  return votes >= 2;
+}
+
+}  // namespace freepath
