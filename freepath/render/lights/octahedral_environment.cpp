@@ -1,0 +1,65 @@
+#include "freepath/render/lights/octahedral_environment.h"
+
+#include <array>
+#include <numeric>
+
+#include "freepath/base/error.h"
+#include "freepath/render/lights/photometry.h"
+
+namespace freepath {
+
+OctahedralEnvironment::OctahedralEnvironment(const Image& image, const Vec3f& luminance_weights,
+                                             const std::string& name)
+    : size_(image.width) {
+  check_octahedral(image, name);
+  radiance_ = light_colours(image, name);
+  const auto size = static_cast<std::size_t>(size_);
+  std::vector<double> importance(size * size);
+  for (int row = 0; row < size_; ++row) {
+    for (int column = 0; column < size_; ++column) {
+      // Some spaces give blue a negative luminance, yet it is light.
+      const Vec3f mean = mean_over_texel(column, row);
+      constexpr float kLeast = 1e-3F;
+      importance[texel(column, row)] =
+          std::max(mean.dot(luminance_weights), kLeast * (mean.x + mean.y + mean.z));
+    }
+  }
+  const double texels = static_cast<double>(size_) * size_;
+  double sum = std::accumulate(importance.begin(), importance.end(), 0.0);
+  fluence_ = 4 * std::numbers::pi * sum / texels;
+  if (sum == 0) {  // a black image is sampled uniformly
+    std::fill(importance.begin(), importance.end(), 1.0);
+    sum = texels;
+  }
+  std::vector<double> row_sums(size);
+  columns_.reserve(importance.size());
+  for (std::size_t row = 0; row < size; ++row) {
+    const std::span<const double> pixels(importance.data() + row * size, size);
+    row_sums[row] = std::accumulate(pixels.begin(), pixels.end(), 0.0);
+    if (row_sums[row] > 0) {
+      const std::vector<AliasEntry> table = make_alias_table(pixels);
+      columns_.insert(columns_.end(), table.begin(), table.end());
+    } else {
+      columns_.insert(columns_.end(), size, AliasEntry{1, 0});  // a row that is never chosen
+    }
+  }
+  rows_ = make_alias_table(row_sums);
+  pdf_.reserve(importance.size());
+  for (const double value : importance) {
+    pdf_.push_back(static_cast<float>(value / sum * texels / (4 * std::numbers::pi)));
+  }
+}
+
+Vec3f OctahedralEnvironment::mean_over_texel(int column, int row) const {
+  // The integral of the two hat functions that meet in a pixel.
+  constexpr std::array<float, 3> kWeights{0.125F, 0.75F, 0.125F};
+  Vec3f mean(0);
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      mean += wrapped(column + dx, row + dy) * (kWeights[dx + 1] * kWeights[dy + 1]);
+    }
+  }
+  return mean;
+}
+
+}  // namespace freepath
