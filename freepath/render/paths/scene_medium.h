@@ -2,7 +2,7 @@
 /// @file A medium of a scene: spectra of its components, from which its cross sections in the
 /// channels of paths are made.
 
-#include <array>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,6 +68,9 @@ class SceneMedium {
 
   /// Its cross sections in the channels of these spectra.
   BoundMedium bind(const SpectrumValues& spectra) const;
+
+  /// Whether its cross sections and emission are the same at all wavelengths.
+  bool is_constant(const SpectrumTable& table) const;
 
   const std::string& name() const { return name_; }
   /// Of a component as events number them.

@@ -1,0 +1,100 @@
+#include "freepath/render/paths/path_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "freepath/base/random.h"
+
+namespace freepath {
+namespace {
+
+/// The index in binary, mirrored at the point: [0, 1).
+double van_der_corput(uint32_t index) {
+  uint32_t reversed = 0;
+  for (int bit = 0; bit < 32; ++bit) reversed |= (index >> bit & 1U) << (31 - bit);
+  return reversed * 0x1p-32;
+}
+
+/// One of the channels alone.
+MediumChannels only(const MediumChannels& channels, int channel) {
+  MediumChannels one;
+  one.count = 1;
+  for (const ComponentChannels& component : channels.components) {
+    ComponentChannels& target = one.components.emplace_back();
+    target.sigma_a[0] = component.sigma_a[channel];
+    target.sigma_s[0] = component.sigma_s[channel];
+    target.emission[0] = component.emission[channel];
+    target.radiance.fill(component.radiance[channel]);
+  }
+  return one;
+}
+
+/// Any number of a stream that nothing else uses.
+double shift_of(uint64_t seed) {
+  RandomStream random(seed, 0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU);
+  return random.uniform();
+}
+
+}  // namespace
+
+ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, const WalkSettings& walk)
+    : scene_(scene), mode_(mode), walk_(walk) {
+  const SpectrumValues first =
+      mode == ColorMode::kRgb ? scene.spectra->in_rgb() : spectra_of_sample(0);
+  for (const SceneMedium& medium : scene.media) {
+    if (!shares_paths(medium.bind(first).channels, walk)) paths_per_sample_ = first.channels();
+  }
+  constant_.resize(scene.media.size());
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    std::shared_ptr<const MediumWalkers> walkers = make_walkers(i, first);
+    const bool grey = walkers->bound.channels.is_grey() && scene.media[i].is_constant(*scene.spectra);
+    if (grey || mode == ColorMode::kRgb) {
+      constant_[i] = std::move(walkers);
+    } else {
+      depends_on_sample_ = true;
+    }
+  }
+  rgb_ = mode == ColorMode::kRgb ? make(first)
+                                 : std::make_shared<const PathColors>(
+                                       PathColors{scene.spectra->in_rgb(), {}});
+}
+
+SpectrumValues ColorFactory::spectra_of_sample(uint32_t sample) const {
+  double u = shift_of(walk_.seed) + van_der_corput(sample) / kMaxChannels;
+  u -= std::floor(u);
+  return scene_.spectra->at(
+      sample_wavelengths<kMaxChannels>(u, WavelengthDensity::kVisible));
+}
+
+std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
+    std::size_t medium, const SpectrumValues& spectra) const {
+  auto result = std::make_shared<MediumWalkers>();
+  result->bound = scene_.media[medium].bind(spectra);
+  WalkSettings settings = walk_;
+  settings.origin = scene_.origin;
+  const MediumChannels& channels = result->bound.channels;
+  if (paths_per_sample_ == 1) {
+    result->walkers.emplace_back(*result->bound.medium, channels, settings);
+  } else {
+    for (int c = 0; c < channels.count; ++c) {
+      result->walkers.emplace_back(*result->bound.medium, only(channels, c), settings);
+    }
+  }
+  return result;
+}
+
+std::shared_ptr<const PathColors> ColorFactory::make(SpectrumValues spectra) const {
+  auto colors = std::make_shared<PathColors>();
+  for (std::size_t i = 0; i < scene_.media.size(); ++i) {
+    colors->media.push_back(constant_[i] ? constant_[i] : make_walkers(i, spectra));
+  }
+  colors->spectra = std::move(spectra);
+  return colors;
+}
+
+std::shared_ptr<const PathColors> ColorFactory::colors_of_sample(uint32_t sample) const {
+  return mode_ == ColorMode::kRgb ? rgb_ : make(spectra_of_sample(sample));
+}
+
+}  // namespace freepath

@@ -1,0 +1,62 @@
+#pragma once
+/// @file What the channels of paths stand for, and the walkers of media in these channels.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "freepath/render/paths/path_scene.h"
+#include "freepath/spectra/spectrum_table.h"
+#include "freepath/transport/walker.h"
+
+namespace freepath {
+
+/// Walkers of a medium: one for all channels of a path, or one for each.
+struct MediumWalkers {
+  BoundMedium bound;
+  std::vector<Walker> walkers;
+};
+
+/// Paths that share wavelengths: the spectra at them and the walkers of all media.
+struct PathColors {
+  SpectrumValues spectra;
+  std::vector<std::shared_ptr<const MediumWalkers>> media;
+};
+
+/// Makes colours for the samples of a scene. In R, G, B all samples share them. In spectral mode a
+/// sample of every pixel has the same wavelengths: the first channel's run through a van der Corput
+/// sequence over a quarter of the spectrum's probability, shifted by the seed, and the others
+/// follow at equal distances of probability [Wilkie14]. So the wavelengths of 2^k samples are
+/// equidistant, and pictures have next to no noise of colour.
+class ColorFactory {
+ public:
+  /// @param scene must outlive this
+  /// @throws Error as Walker
+  ColorFactory(const PathScene& scene, ColorMode mode, const WalkSettings& walk);
+
+  std::shared_ptr<const PathColors> colors_of_sample(uint32_t sample) const;
+
+  /// Paths of a sample: 1, or one for each channel where a tracker gives each its own.
+  int paths_per_sample() const { return paths_per_sample_; }
+  /// Whether samples differ in walkers, so that flights of different samples are walked apart.
+  bool depends_on_sample() const { return depends_on_sample_; }
+  /// R, G, B of the scene's spectra, for pictures of albedo.
+  const SpectrumValues& rgb() const { return rgb_->spectra; }
+
+ private:
+  std::shared_ptr<const MediumWalkers> make_walkers(std::size_t medium,
+                                                    const SpectrumValues& spectra) const;
+  std::shared_ptr<const PathColors> make(SpectrumValues spectra) const;
+  SpectrumValues spectra_of_sample(uint32_t sample) const;
+
+  const PathScene& scene_;
+  ColorMode mode_;
+  WalkSettings walk_;
+  int paths_per_sample_ = 1;
+  bool depends_on_sample_ = false;
+  /// Walkers of media that are the same at all wavelengths, null of others.
+  std::vector<std::shared_ptr<const MediumWalkers>> constant_;
+  std::shared_ptr<const PathColors> rgb_;
+};
+
+}  // namespace freepath
