@@ -24,16 +24,15 @@ float Draine::mean_cosine() const {
 
 // The distribution function leads to a quartic with a closed solution [Jendersie23]. As published,
 // in w = √(1 + g² - 2 g cosine), three of its roots meet at w = 1 as g goes to 0, and the result
-// is divided by g. Here w = 1 - g v: v runs from -1 to 1 with the cosine, cosine = v + g (1 -
-// v²)/2, and the integral of the density over v is proportional to
+// is divided by g. Here w = 1 - g v: as the cosine, v = cosine - g (1 - v²) / 2 runs from -1 to 1,
+// and the integral of the density over it is proportional to
 //
 //     F(v) = (v + alpha (4 v³ + g (3 + 6 v² - v⁴)) / 12) / (1 - g v).
 //
-// F(v) = t with k = 12 / alpha becomes a depressed quartic in w; its resolvent z³ - 12 (1 + g²) z²
-// +
-// ..., in y with z = 4 (1 + g²) + g y, is a rising cubic that keeps its form down to g = 0. The two
-// real roots of the quartic have the sum -√z; the larger one is w. Both square roots are taken as
-// 1 + g times something, so that g cancels by hand.
+// F(v) = t, with k = 12 / alpha, is a quartic in w without a cubic term. Its resolvent cubic for
+// the square z of the sum of two roots, with z = 4 (1 + g²) + g y, is a rising cubic in y that
+// keeps its form down to g = 0. The two real roots of the quartic have the sum -√z; the larger one
+// is w. Both square roots are taken as 1 + g times something, so that g cancels by hand.
 
 /// h = (1 - cosine) / 2 as measured from the peak, below which lies the fraction u of all samples.
 double Draine::quantile(double u) const {

@@ -13,7 +13,9 @@ namespace freepath {
 ///
 /// with four functions of the diameter, given piecewise below 0.1 µm (where it tends to Rayleigh's
 /// function), to 1.5 µm, to 5 µm (haze and mist) and from 5 µm on (fog and cloud). At these borders
-/// it jumps by 0.02 or less in the mean cosine, but by up to two thirds in its peak.
+/// it jumps by 0.02 or less in the mean cosine, but by up to two thirds in its peak. Colour is not
+/// part of the fit: its mean cosine is nearest to that of water at a wavelength of 0.4 µm. Coronas,
+/// fog bow and glory are smoothed away.
 class Droplets {
  public:
   /// The largest diameter of the fit [µm].

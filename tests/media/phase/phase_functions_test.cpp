@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,6 +60,11 @@ struct Case {
   std::string name;
   PhaseFunction function;
 };
+
+/// How GoogleTest shows a case.
+void PrintTo(const Case& shown, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+  *out << shown.name;
+}
 
 /// Texts for each name.
 const std::map<std::string_view, std::vector<std::string>> kExamples = {

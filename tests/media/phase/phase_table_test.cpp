@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,8 +37,7 @@ double at_angle(const PhaseFunction& function, double degrees) {
 
 TEST(PhaseTable, IsNormalisedWhateverItsScale) {
   for (const std::string scale : {"", "e-300", "e300"}) {
-    const std::string value = "4" + scale;
-    const PhaseFunction function = read("0 " + value + "\n180 " + value + "\n");
+    const PhaseFunction function = read(fmt::format("0 4{0}\n180 4{0}\n", scale));
     EXPECT_NEAR(at_angle(function, 70), 1 / (4 * kPi), 1e-7) << scale;
     EXPECT_NEAR(function.mean_cosine(), 0, 1e-7) << scale;
   }
