@@ -1,37 +1,12 @@
 #include "freepath/render/renderer.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <mutex>
 
 #include "freepath/base/error.h"
-#include "freepath/base/threads.h"
-#include "freepath/render/deadline.h"
+#include "freepath/render/pass_renderer.h"
 
 namespace freepath {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Paths of a job: enough to fill a wavefront many times over, so that its end, where lanes idle,
-/// counts little; few enough to share a pass evenly.
-constexpr std::size_t kPathsPerJob = 8192;
-/// In a first pass that may run out of time, where jobs under way are lost, jobs are to take this
-/// part of the time; but not fewer paths, since lanes idle at the end of each job.
-constexpr double kHastyShareOfTime = 0.1;
-constexpr std::size_t kFewestPathsPerJob = 512;
-constexpr uint32_t kMaxSamplesPerPass = 256;
-constexpr double kSecondsPerPass = 2;
-constexpr double kSecondsBetweenReports = 0.1;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 PathSetup make_setup(const Medium& medium, const Camera& camera, const Lights& lights,
                      const RenderSettings& settings) {
@@ -56,129 +31,6 @@ PathSetup make_setup(const Medium& medium, const Camera& camera, const Lights& l
   return setup;
 }
 
-/// Renders pass after pass into a film.
-class PassRenderer {
- public:
-  PassRenderer(const PathSetup& setup, const RenderSettings& settings,
-               const ProgressFunction& progress, Film& film)
-      : setup_(setup),
-        settings_(settings),
-        progress_(progress),
-        film_(film),
-        threads_(settings.threads),
-        wavefronts_([this] { return PathWavefront(setup_); }),
-        start_(Clock::now()),
-        deadline_(settings.time_limit) {}
-
-  void run() {
-    const bool timed = settings_.time_limit > 0;
-    const uint32_t wanted = settings_.samples > 0 ? settings_.samples : UINT32_MAX;
-    uint32_t samples = 1;
-    while (!deadline_.stop_is_wished() && samples_done_ < wanted) {
-      samples = std::min(samples, wanted - samples_done_);
-      const double before = seconds_since(start_);
-      deadline_.begin_pass(before, samples_done_ == 0);
-      pass(samples);
-      if (over_) break;
-      samples_done_ += samples;
-      const double now = seconds_since(start_);
-      if (timed && now >= settings_.time_limit) break;
-      samples = next_pass(samples, (now - before) / samples, timed, now);
-      if (samples == 0) break;
-    }
-    report(seconds_since(start_), true);
-  }
-
-  bool stop_is_wished() const { return deadline_.stop_is_wished(); }
-  double seconds() const { return seconds_since(start_); }
-  PathWavefront::Counts counts() {
-    PathWavefront::Counts sum;
-    for (const PathWavefront& wavefront : wavefronts_) sum.merge(wavefront.counts());
-    return sum;
-  }
-
- private:
-  uint32_t next_pass(uint32_t samples, double seconds_per_sample, bool timed, double now) const {
-    double wanted = kSecondsPerPass / std::max(seconds_per_sample, 1e-9);
-    if (timed) wanted = std::min(wanted, (settings_.time_limit - now) / seconds_per_sample);
-    if (timed && wanted < 0.5) return 0;
-    wanted = std::min(wanted, 4.0 * samples);
-    return static_cast<uint32_t>(std::clamp(wanted, 1.0, double(kMaxSamplesPerPass)));
-  }
-
-  void pass(uint32_t samples) {
-    std::atomic<std::size_t> next_pixel = 0;
-    threads_.execute([&] {
-      tbb::parallel_for(
-          tbb::blocked_range<int>(0, threads_.count(), 1),
-          [&](const tbb::blocked_range<int>&) { work(samples, next_pixel); },
-          tbb::simple_partitioner());
-    });
-  }
-
-  /// One thread's part of a pass: takes the next pixels until there are none.
-  void work(uint32_t samples, std::atomic<std::size_t>& next_pixel) {
-    const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
-    PathWavefront& wavefront = wavefronts_.local();
-    const auto pass_is_over = [&] { return is_over(samples); };
-    const bool hasty = settings_.time_limit > 0 && samples_done_ == 0;
-    std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
-    while (!over_) {
-      const std::size_t wanted = std::max<std::size_t>(paths / samples, 1);
-      const std::size_t first = next_pixel.fetch_add(wanted);
-      if (first >= pixels) return;
-      const std::size_t count = std::min(wanted, pixels - first);
-      const Clock::time_point began = Clock::now();
-      if (!wavefront.trace({first, count, samples_done_, samples}, film_, pass_is_over)) return;
-      const double paths_traced = static_cast<double>(count) * samples;
-      paths_done_ += paths_traced / static_cast<double>(pixels);
-      if (hasty) paths = hasty_job_size(seconds_since(began) / paths_traced);
-    }
-  }
-
-  /// Paths of a job so that it takes a small part of the time there is.
-  std::size_t hasty_job_size(double seconds_per_path) const {
-    const double paths = kHastyShareOfTime * settings_.time_limit / seconds_per_path;
-    return static_cast<std::size_t>(
-        std::clamp(paths, double(kFewestPathsPerJob), double(kPathsPerJob)));
-  }
-
-  /// Whether a pass over so many samples has to end; every thread asks before every flight.
-  bool is_over(uint32_t samples) {
-    const double now = seconds_since(start_);
-    if (now >= next_report_) report(now);
-    const double done = (paths_done_ - samples_done_) / samples;
-    if (!over_ && deadline_.is_over(now, done)) over_ = true;
-    return over_;
-  }
-
-  void report(double now, bool last = false) {
-    if (!progress_) return;
-    std::unique_lock lock(report_mutex_, std::defer_lock);
-    if (last) {
-      lock.lock();
-    } else if (!lock.try_lock() || now < next_report_) {
-      return;  // another thread is at it, or has been
-    }
-    next_report_ = now + kSecondsBetweenReports;
-    if (!progress_({paths_done_, double(settings_.samples), now})) deadline_.wish_to_stop(now);
-  }
-
-  const PathSetup& setup_;
-  const RenderSettings& settings_;
-  const ProgressFunction& progress_;
-  Film& film_;
-  Threads threads_;
-  tbb::enumerable_thread_specific<PathWavefront> wavefronts_;
-  Clock::time_point start_;
-  Deadline deadline_;
-  std::atomic<bool> over_ = false;
-  std::atomic<double> paths_done_ = 0;  // samples of each pixel, on average
-  std::mutex report_mutex_;
-  std::atomic<double> next_report_ = kSecondsBetweenReports;
-  uint32_t samples_done_ = 0;
-};
-
 }  // namespace
 
 RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
@@ -189,25 +41,10 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   RenderResult result{
       .film = Film(camera.width(), camera.height()), .free_paths = {}, .shadow_rays = {}};
   const PathSetup setup = make_setup(medium, camera, lights, settings);
-  PassRenderer passes(setup, settings, progress, result.film);
+  PassRenderer<PathWavefront> passes([&] { return PathWavefront(setup); }, settings, progress,
+                                     result.film);
   passes.run();
-  const Film::SampleCounts samples = result.film.sample_counts();
-  result.samples = samples.fewest;
-  result.most_samples = samples.most;
-  result.pixels_without_samples = samples.pixels_without;
-  result.interrupted = passes.stop_is_wished() && result.samples != settings.samples;
-  result.seconds = passes.seconds();
-  const PathWavefront::Counts counts = passes.counts();
-  result.paths = counts.paths;
-  result.overflows = counts.overflows;
-  result.free_paths = counts.free_paths;
-  result.shadow_rays = counts.shadow_rays;
-  const Film::NonFinite non_finite = result.film.non_finite_samples();
-  if (non_finite.samples > 0) {
-    const auto width = static_cast<std::size_t>(camera.width());
-    fail("internal error: {} samples are not finite, the first in pixel ({}, {}); please report it",
-         non_finite.samples, non_finite.first_pixel % width, non_finite.first_pixel / width);
-  }
+  finish_result(passes, settings, result);
   return result;
 }
 

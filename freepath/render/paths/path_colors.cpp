@@ -48,23 +48,23 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, const WalkSet
   constant_.resize(scene.media.size());
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     std::shared_ptr<const MediumWalkers> walkers = make_walkers(i, first);
-    const bool grey = walkers->bound.channels.is_grey() && scene.media[i].is_constant(*scene.spectra);
+    const bool grey =
+        walkers->bound.channels.is_grey() && scene.media[i].is_constant(*scene.spectra);
     if (grey || mode == ColorMode::kRgb) {
       constant_[i] = std::move(walkers);
     } else {
       depends_on_sample_ = true;
     }
   }
-  rgb_ = mode == ColorMode::kRgb ? make(first)
-                                 : std::make_shared<const PathColors>(
-                                       PathColors{scene.spectra->in_rgb(), {}});
+  rgb_ = mode == ColorMode::kRgb
+             ? make(first)
+             : std::make_shared<const PathColors>(PathColors{scene.spectra->in_rgb(), {}});
 }
 
 SpectrumValues ColorFactory::spectra_of_sample(uint32_t sample) const {
   double u = shift_of(walk_.seed) + van_der_corput(sample) / kMaxChannels;
   u -= std::floor(u);
-  return scene_.spectra->at(
-      sample_wavelengths<kMaxChannels>(u, WavelengthDensity::kVisible));
+  return scene_.spectra->at(sample_wavelengths<kMaxChannels>(u, WavelengthDensity::kVisible));
 }
 
 std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(

@@ -172,12 +172,11 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
 
 bool SceneMedium::is_constant(const SpectrumTable& table) const {
   if (colors_) return false;
-  return std::all_of(components_.begin(), components_.end(),
-                     [&](const SceneMediumComponent& component) {
-                       return !component.temperature && table.is_constant(component.sigma_a) &&
-                              table.is_constant(component.sigma_s) &&
-                              table.is_constant(component.radiance);
-                     });
+  return std::all_of(
+      components_.begin(), components_.end(), [&](const SceneMediumComponent& component) {
+        return !component.temperature && table.is_constant(component.sigma_a) &&
+               table.is_constant(component.sigma_s) && table.is_constant(component.radiance);
+      });
 }
 
 Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {

@@ -1,0 +1,47 @@
+#pragma once
+/// @file A path in flight.
+
+#include <cstdint>
+#include <optional>
+
+#include "freepath/base/channels.h"
+#include "freepath/base/vector.h"
+#include "freepath/render/film.h"
+#include "freepath/render/paths/path_colors.h"
+#include "freepath/render/paths/path_scene.h"
+#include "freepath/render/surfaces/surfaces.h"
+
+namespace freepath {
+
+/// A path, and the ray that it flies on.
+struct ScenePath {
+  Vec3f origin;     ///< Of its ray [world, relative to the scene's origin].
+  Vec3f direction;  ///< Of its ray, unit [world].
+  /// Where the ray ends at a surface, once that is known.
+  std::optional<SurfaceHit> hit;
+  bool surfaces_known = false;
+  MediumId medium = kVacuum;
+
+  const PathColors* colors = nullptr;
+  Channels throughput;
+  Channels density{1.0F};  ///< FlightStream::density of the flights so far.
+  Channels radiance;
+
+  Vec3f scattered_from;  ///< Where the direction was drawn.
+  float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
+  int hero = 0;   ///< The channel that decides where channels part.
+  bool only_hero = false;
+  bool is_dead = false;
+
+  uint32_t pixel = 0;
+  uint32_t sample_key = 0;  ///< Of its random numbers.
+  uint32_t flights = 0;     ///< Rays so far.
+  uint32_t scatterings = 0;
+  uint32_t result = 0;  ///< Place among the job's samples.
+  int channel = -1;     ///< The one channel that it carries, or -1.
+  uint64_t lookups = 0;
+  float distance = 0;  ///< Flown from the camera, until the first event [world].
+  PathSample sample;   ///< What else the film records of it.
+};
+
+}  // namespace freepath

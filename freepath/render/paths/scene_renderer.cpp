@@ -1,0 +1,49 @@
+#include "freepath/render/paths/scene_renderer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "freepath/base/error.h"
+#include "freepath/render/pass_renderer.h"
+#include "freepath/render/paths/scene_wavefront.h"
+
+namespace freepath {
+namespace {
+
+/// Of a job whose samples need walkers of their own: their flights are walked apart, and fewer
+/// would leave lanes idle.
+constexpr std::size_t kPixelsOfSplitJobs = 1024;
+
+}  // namespace
+
+RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
+                          const ProgressFunction& progress) {
+  if (settings.samples == 0 && settings.time_limit <= 0) {
+    fail("nothing to render: neither samples nor a time limit is given");
+  }
+  RenderResult result{.film = Film(scene.camera->width(), scene.camera->height()),
+                      .free_paths = {},
+                      .shadow_rays = {}};
+  const ColorFactory factory(scene, mode, settings.walk);
+  SceneSetup setup;
+  setup.scene = &scene;
+  setup.factory = &factory;
+  setup.seed = settings.walk.seed;
+  setup.max_scatterings = settings.max_scatterings;
+  setup.slots = std::max<std::size_t>(settings.batch, 1);
+  const auto prepare = [&](uint32_t first, uint32_t count) {
+    setup.first_sample = first;
+    setup.colors.assign(count, nullptr);
+    tbb::parallel_for(0U, count,
+                      [&](uint32_t i) { setup.colors[i] = factory.colors_of_sample(first + i); });
+  };
+  PassRenderer<SceneWavefront> passes([&] { return SceneWavefront(setup); }, settings, progress,
+                                      result.film, prepare,
+                                      factory.depends_on_sample() ? kPixelsOfSplitJobs : 1);
+  passes.run();
+  finish_result(passes, settings, result);
+  return result;
+}
+
+}  // namespace freepath

@@ -1,0 +1,383 @@
+#include "freepath/render/paths/scene_wavefront.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace freepath {
+namespace {
+
+/// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
+constexpr float kLargestThroughput = 1e28F;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Light on a surface is not shadowed by that surface itself.
+constexpr float kShadowLength = 1 - 1e-4F;
+
+// Dimensions of SampleSequence.
+constexpr uint32_t kFilmDimension = 0;
+constexpr uint32_t kLensDimension = 1;
+
+Spectrum to_spectrum(const Vec3f& rgb) { return {rgb.x, rgb.y, rgb.z}; }
+
+float mean(const Channels& values, int channels) {
+  float sum = 0;
+  for (int c = 0; c < channels; ++c) sum += values[c];
+  return sum / static_cast<float>(channels);
+}
+
+}  // namespace
+
+SceneWavefront::SceneWavefront(const SceneSetup& setup)
+    : setup_(setup),
+      scene_(*setup.scene),
+      paths_(setup.slots),
+      batches_(setup.slots, true),
+      shadows_(*setup.scene, setup.slots) {}
+
+bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
+  results_.assign(job.pixels * job.samples, PathSample{});
+  job_counts_ = {};
+  const std::size_t total = job.pixels * job.samples * setup_.factory->paths_per_sample();
+  job_counts_.paths = total;
+  std::size_t next = 0;
+  active_ = 0;
+  while (true) {
+    while (active_ < setup_.slots && next < total) start_path(job, next++, paths_[active_++]);
+    if (active_ == 0) break;
+    if (stop && stop()) return false;
+    fly();
+    shadows_.trace(paths_, job_counts_.shadow_rays);
+    for (std::size_t slot = 0; slot < active_;) {
+      if (!paths_[slot].is_dead) {
+        ++slot;
+        continue;
+      }
+      finish(paths_[slot]);
+      paths_[slot] = std::move(paths_[--active_]);
+    }
+  }
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    film.add(job.first_pixel + i / job.samples, results_[i]);
+  }
+  counts_.merge(job_counts_);
+  return true;
+}
+
+void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePath& path) {
+  path = {};
+  // All pixels of a sample follow each other, since they may share walkers.
+  const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
+  const std::size_t place = number / per_sample;
+  const auto channel = static_cast<int>(number % per_sample);
+  const std::size_t pixel = place % job.pixels;
+  const auto sample = static_cast<uint32_t>(place / job.pixels);
+  path.result = static_cast<uint32_t>(pixel * job.samples + sample);
+  path.pixel = static_cast<uint32_t>(job.first_pixel + pixel);
+  const uint32_t sample_number = job.first_sample + sample;
+  path.sample_key = sample_number * static_cast<uint32_t>(per_sample) + channel;
+  path.colors = setup_.colors[sample_number - setup_.first_sample].get();
+  const int channels = path.colors->spectra.channels();
+  if (per_sample > 1) {
+    path.channel = path.hero = channel;
+    path.only_hero = true;
+    path.throughput[channel] = 1;
+  } else {
+    for (int c = 0; c < channels; ++c) path.throughput[c] = 1;
+  }
+
+  // The channels' paths of a sample share its place on the film.
+  const SampleSequence numbers(scene_.samples, setup_.seed, path.pixel, sample_number);
+  const auto film = numbers.pair(kFilmDimension);
+  const FilterSample filtered = scene_.filter.sample(film[0], film[1]);
+  const auto width = static_cast<std::size_t>(scene_.camera->width());
+  const float x = static_cast<float>(path.pixel % width) + 0.5F + filtered.x;
+  const float y = static_cast<float>(path.pixel / width) + 0.5F + filtered.y;
+  std::array<float, 2> lens{};
+  if (scene_.camera->has_lens()) lens = numbers.pair(kLensDimension);
+  const CameraRay ray = scene_.camera->ray(x, y, lens[0], lens[1]);
+  path.throughput *= filtered.weight;
+  path.origin = Vec3f(ray.origin - scene_.origin);
+  path.direction = ray.direction;
+  path.medium = scene_.camera_medium;
+  if (per_sample == 1) {
+    RandomStream random(setup_.seed, path.pixel, path.sample_key,
+                        stream_number(StreamPurpose::kCamera, 0));
+    path.hero =
+        std::min(static_cast<int>(random.uniform() * static_cast<float>(channels)), channels - 1);
+  }
+}
+
+bool SceneWavefront::needs_surfaces_first(const ScenePath& path) const {
+  if (!scene_.surfaces || path.surfaces_known) return false;
+  if (path.medium == kVacuum || !scene_.is_clear[path.medium]) return true;
+  const Box3d& box = scene_.media[path.medium].bounds();
+  return !box.intersects(Vec3d(path.origin) + scene_.origin);
+}
+
+void SceneWavefront::find_surface(ScenePath& path) const {
+  path.surfaces_known = true;
+  if (scene_.surfaces) {
+    path.hit = scene_.surfaces->intersect(path.origin, path.direction, 0, kInfinity);
+  }
+}
+
+void SceneWavefront::fly() {
+  batches_.clear();
+  for (std::size_t slot = 0; slot < active_; ++slot) {
+    ScenePath& path = paths_[slot];
+    if (needs_surfaces_first(path)) find_surface(path);
+    if (path.medium == kVacuum) {
+      fly_in_vacuum(slot);
+      continue;
+    }
+    const auto& walkers = path.colors->media[path.medium]->walkers;
+    const Walker& walker = walkers[path.channel < 0 ? 0 : path.channel];
+    auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(slot));
+    RayStream& rays = batch.rays;
+    set_ray(rays, i, path.origin, path.direction, path.hit ? path.hit->t : kInfinity);
+    rays.pixel[i] = path.pixel;
+    rays.sample[i] = path.sample_key;
+    rays.stream[i] = stream_number(StreamPurpose::kWalk, path.flights);
+    if (!rays.weighted()) continue;
+    for (int c = 0; c < walker.channels(); ++c) {
+      rays.weight[c][i] = path.throughput[c];
+      rays.density[c][i] = path.density[c];
+    }
+  }
+  for (WalkBatches::Batch* const batch : batches_.finish()) {
+    batch->walker->free_paths(batch->rays, flights_, job_counts_.free_paths);
+    for (std::size_t i = 0; i < batch->owners.size(); ++i) {
+      take_flight(batch->owners[i], *batch->walker, i, batch->rays.weighted());
+    }
+  }
+}
+
+void SceneWavefront::fly_in_vacuum(std::size_t slot) {
+  ScenePath& path = paths_[slot];
+  if (!path.surfaces_known) find_surface(path);
+  if (path.hit) {
+    meet_surface(slot);
+  } else {
+    escape(path);
+  }
+}
+
+void SceneWavefront::take_flight(std::size_t slot, const Walker& walker, std::size_t i,
+                                 bool weighted) {
+  ScenePath& path = paths_[slot];
+  path.lookups += flights_.lookups[i];
+  const int channels = walker.channels();
+  if (weighted) {
+    for (int c = 0; c < channels; ++c) {
+      path.radiance[c] += flights_.emitted[c][i];
+      path.throughput[c] = flights_.weight[c][i];
+      path.density[c] = flights_.density[c][i];
+    }
+  } else {
+    // A walker of one channel serves all, or the only one that there is.
+    path.radiance += path.throughput * flights_.emitted[0][i];
+    path.throughput *= flights_.weight[0][i];
+  }
+  if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
+    path.radiance = Channels(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
+    path.is_dead = true;
+    return;
+  }
+  switch (flights_.event[i]) {
+    case Event::kAbsorb:
+      path.is_dead = true;
+      return;
+    case Event::kScatter:
+      scatter_in_medium(slot, flights_.t[i], flights_.component[i]);
+      return;
+    case Event::kEscape:
+      break;
+  }
+  if (!path.surfaces_known) find_surface(path);
+  if (path.hit) {
+    meet_surface(slot);
+  } else {
+    escape(path);
+  }
+}
+
+void SceneWavefront::escape(ScenePath& path) const {
+  path.is_dead = true;
+  if (path.scatterings == 0) {
+    path.sample.alpha = 1 - mean(path.throughput, path.colors->spectra.channels());
+  }
+  const LightSeen light =
+      scene_.lights->escape(path.scattered_from, path.direction, path.colors->spectra);
+  // What next-event estimation could have found too is shared with it.
+  const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
+  path.radiance += path.throughput * light.radiance * share;
+}
+
+void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
+  path.origin = origin;
+  path.direction = direction;
+  path.hit.reset();
+  path.surfaces_known = false;
+  ++path.flights;
+}
+
+void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) const {
+  path.medium = medium_beyond(scene_.shapes[hit.point.shape], !hit.from_inside, path.medium);
+  if (path.scatterings == 0) path.distance += hit.t;
+  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, path.direction), path.direction);
+}
+
+void SceneWavefront::meet_surface(std::size_t slot) {
+  ScenePath& path = paths_[slot];
+  const SurfaceHit& hit = *path.hit;
+  const PathShape& shape = scene_.shapes[hit.point.shape];
+  if (shape.light) {
+    const LightSeen light =
+        path.pdf > 0
+            ? scene_.lights->hit(path.scattered_from, *shape.light, hit.point, path.colors->spectra)
+            : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction,
+                                               path.colors->spectra),
+                        0};
+    const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
+    path.radiance += path.throughput * light.radiance * share;
+  }
+  if (!shape.material) {
+    const SurfaceHit crossed = hit;  // which goes with the ray
+    cross_boundary(path, crossed);
+    return;
+  }
+  scatter_at_surface(slot);
+}
+
+bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
+  if (path.scatterings > setup_.max_scatterings) return false;
+  const float throughput = largest_magnitude(path.throughput);
+  if (throughput >= setup_.roulette_threshold) return true;
+  const float survival = throughput / setup_.roulette_threshold;
+  if (random.uniform() >= survival) return false;
+  path.throughput *= 1.0F / survival;
+  return true;
+}
+
+void SceneWavefront::scatter_at_surface(std::size_t slot) {
+  ScenePath& path = paths_[slot];
+  const SurfaceHit hit = *path.hit;
+  const PathShape& shape = scene_.shapes[hit.point.shape];
+  const Material& material = scene_.materials[*shape.material];
+  if (path.scatterings++ == 0) {
+    const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
+    record_event(path, hit.t, material.albedo(hit.point, path.direction, context),
+                 hit.point.shading_normal);
+    path.sample.alpha = 1;
+  }
+  RandomStream random(setup_.seed, path.pixel, path.sample_key,
+                      stream_number(StreamPurpose::kScatter, path.flights));
+  if (!survives(path, random)) {
+    path.is_dead = true;
+    return;
+  }
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  const Vec3f position = hit.point.position;
+  const auto side = [&](const Vec3f& direction) {
+    return medium_beyond(shape, direction.dot(hit.point.normal) < 0, path.medium);
+  };
+  if (!material.is_specular() && !scene_.lights->is_dark()) {
+    const float u0 = random.uniform();
+    const float u1 = random.uniform();
+    const float u2 = random.uniform();
+    const LightDraw light = scene_.lights->sample(position, path.colors->spectra, u0, u1, u2);
+    if (light.pdf > 0) {
+      const MaterialValue f =
+          material.evaluate(hit.point, path.direction, light.direction, random, context);
+      const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
+      const Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
+      if (!is_black(radiance)) {
+        shadows_.add(static_cast<uint32_t>(slot),
+                     scene_.surfaces->offset_ray_origin(hit.point, light.direction),
+                     light.direction, light.distance * kShadowLength, side(light.direction),
+                     radiance);
+      }
+    }
+  }
+  const auto next = material.sample(hit.point, path.direction, random, context);
+  if (!next || is_black(next->weight)) {
+    path.is_dead = true;
+    return;
+  }
+  path.throughput *= next->weight;
+  path.only_hero = path.only_hero || next->hero_only;
+  path.pdf = next->specular ? 0.0F : next->pdf;
+  path.scattered_from = position;
+  path.medium = side(next->direction);
+  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, next->direction), next->direction);
+}
+
+void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
+  ScenePath& path = paths_[slot];
+  const SceneMedium& medium = scene_.media[path.medium];
+  if (path.scatterings++ == 0) {
+    record_event(path, t, medium.albedo(component, setup_.factory->rgb()), -path.direction);
+    path.sample.alpha = 1;
+  }
+  RandomStream random(setup_.seed, path.pixel, path.sample_key,
+                      stream_number(StreamPurpose::kScatter, path.flights));
+  if (!survives(path, random)) {
+    path.is_dead = true;
+    return;
+  }
+  const Vec3f position = path.origin + path.direction * t;
+  const PhaseFunction& phase = medium.phase(component);
+  if (!scene_.lights->is_dark()) {
+    const float u0 = random.uniform();
+    const float u1 = random.uniform();
+    const float u2 = random.uniform();
+    const LightDraw light = scene_.lights->sample(position, path.colors->spectra, u0, u1, u2);
+    if (light.pdf > 0) {
+      // The phase function is its own density.
+      const float value = phase.evaluate(path.direction, light.direction);
+      const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
+      const Channels radiance = path.throughput * light.radiance * share;
+      if (!is_black(radiance)) {
+        shadows_.add(static_cast<uint32_t>(slot), position, light.direction,
+                     light.distance * kShadowLength, path.medium, radiance);
+      }
+    }
+  }
+  const float u1 = random.uniform();
+  const float u2 = random.uniform();
+  const PhaseSample next = phase.sample(path.direction, u1, u2);
+  path.pdf = next.pdf;
+  path.scattered_from = position;
+  go_on(path, position, next.direction);
+}
+
+void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albedo,
+                                  const Vec3f& /*normal*/) const {
+  path.sample.albedo = {albedo[0], albedo[1], albedo[2]};
+  path.sample.depth = path.distance + t;
+  path.sample.depth_weight = 1;
+}
+
+void SceneWavefront::finish(ScenePath& path) {
+  PathSample& sample = results_[path.result];
+  sample.lookups += static_cast<float>(path.lookups);
+  if (!is_finite(path.radiance)) {
+    ++job_counts_.overflows;
+    return;
+  }
+  sample.radiance += to_spectrum(path.colors->spectra.to_rgb(path.radiance));
+  const auto share = 1.0F / static_cast<float>(setup_.factory->paths_per_sample());
+  sample.alpha += path.sample.alpha * share;
+  sample.albedo += path.sample.albedo * share;
+  const float weight = path.sample.depth_weight * share;
+  const float total = sample.depth_weight + weight;
+  if (total > 0) {
+    sample.depth = (sample.depth * sample.depth_weight + path.sample.depth * weight) / total;
+  }
+  sample.depth_weight = total;
+}
+
+}  // namespace freepath

@@ -1,0 +1,79 @@
+#pragma once
+/// @file A wavefront of paths through a scene of media, surfaces and lights.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "freepath/base/random.h"
+#include "freepath/render/film.h"
+#include "freepath/render/path_wavefront.h"
+#include "freepath/render/paths/path_colors.h"
+#include "freepath/render/paths/path_scene.h"
+#include "freepath/render/paths/path_state.h"
+#include "freepath/render/paths/shadow_tracer.h"
+#include "freepath/render/paths/walk_batches.h"
+
+namespace freepath {
+
+/// What all paths of a picture of a scene share.
+struct SceneSetup {
+  const PathScene* scene = nullptr;
+  const ColorFactory* factory = nullptr;
+  uint64_t seed = 0;
+  uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
+  /// Russian roulette is played where no channel's throughput reaches this.
+  float roulette_threshold = 0.25F;
+  std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
+  /// Of the samples of a pass, from first_sample on.
+  std::vector<std::shared_ptr<const PathColors>> colors;
+  uint32_t first_sample = 0;
+};
+
+/// Traces paths through a scene: to the next surface or collision, scatter with next-event
+/// estimation and multiple importance sampling [Veach97, balance heuristic], Russian roulette,
+/// until every path has ended. One wavefront for each thread; its memory is used again.
+class SceneWavefront {
+ public:
+  explicit SceneWavefront(const SceneSetup& setup);
+
+  /// As PathWavefront::trace.
+  bool trace(const PathJob& job, Film& film, const std::function<bool()>& stop = {});
+
+  const PathWavefront::Counts& counts() const { return counts_; }
+
+ private:
+  void start_path(const PathJob& job, std::size_t number, ScenePath& path);
+  /// Sends all paths on: those in vacuum at once, others by their walkers.
+  void fly();
+  void fly_in_vacuum(std::size_t slot);
+  void take_flight(std::size_t slot, const Walker& walker, std::size_t i, bool weighted);
+  /// Whether the surface at which a ray ends has to be known before it flies.
+  bool needs_surfaces_first(const ScenePath& path) const;
+  void find_surface(ScenePath& path) const;
+
+  void escape(ScenePath& path) const;
+  void meet_surface(std::size_t slot);
+  void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
+  void scatter_at_surface(std::size_t slot);
+  void scatter_in_medium(std::size_t slot, float t, std::size_t component);
+  /// @return false if the path has ended
+  bool survives(ScenePath& path, RandomStream& random) const;
+  void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
+  void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal) const;
+  void finish(ScenePath& path);
+
+  const SceneSetup& setup_;
+  const PathScene& scene_;
+  std::vector<ScenePath> paths_;
+  std::size_t active_ = 0;
+  WalkBatches batches_;
+  FlightStream flights_;
+  ShadowTracer shadows_;
+  std::vector<PathSample> results_;
+  PathWavefront::Counts job_counts_;
+  PathWavefront::Counts counts_;
+};
+
+}  // namespace freepath
