@@ -43,16 +43,14 @@ class AreaShape::Kind {
   virtual AreaSample sample(uint32_t primitive, float u0, float u1) const = 0;
   virtual double pdf(uint32_t primitive, const SurfacePoint& point) const = 0;
 
-  virtual AreaSample sample_from(const Vec3f& from, uint32_t primitive, float u0,
-                                 float u1) const {
+  virtual AreaSample sample_from(const Vec3f& from, uint32_t primitive, float u0, float u1) const {
     AreaSample drawn = sample(primitive, u0, u1);
     const double converted =
         per_solid_angle(drawn.pdf, Vec3d(from), Vec3d(drawn.position), Vec3d(drawn.normal));
     drawn.pdf = static_cast<float>(converted);
     return drawn;
   }
-  virtual double pdf_from(const Vec3f& from, uint32_t primitive,
-                          const SurfacePoint& point) const {
+  virtual double pdf_from(const Vec3f& from, uint32_t primitive, const SurfacePoint& point) const {
     return per_solid_angle(pdf(primitive, point), Vec3d(from), Vec3d(point.position),
                            Vec3d(point.normal));
   }
@@ -78,8 +76,7 @@ class AreaShape::TriangleKind : public Kind {
     return whole > 0 ? 1 / whole : 0;
   }
 
-  AreaSample sample_from(const Vec3f& from, uint32_t triangle, float u0,
-                         float u1) const override {
+  AreaSample sample_from(const Vec3f& from, uint32_t triangle, float u0, float u1) const override {
     const SphericalTriangle seen = seen_from(from, triangle);
     if (!is_well_conditioned(seen)) return Kind::sample_from(from, triangle, u0, u1);
     const LocalRay ray{Vec3d(from), seen.sample(u0, u1)};
@@ -98,8 +95,7 @@ class AreaShape::TriangleKind : public Kind {
         mesh_.describe(triangle, static_cast<float>(inside_u), static_cast<float>(inside_v)),
         1 / seen.solid_angle());
   }
-  double pdf_from(const Vec3f& from, uint32_t triangle,
-                  const SurfacePoint& point) const override {
+  double pdf_from(const Vec3f& from, uint32_t triangle, const SurfacePoint& point) const override {
     const SphericalTriangle seen = seen_from(from, triangle);
     if (!is_well_conditioned(seen)) return Kind::pdf_from(from, triangle, point);
     return 1 / seen.solid_angle();
@@ -133,8 +129,7 @@ double sample_linear(double u, double a, double b) {
 /// of a flat patch, whose area is bilinear.
 class AreaShape::PatchKind : public Kind {
  public:
-  PatchKind(const SurfaceShape& shape, const Vec3d& origin)
-      : mesh_(trace_patches(shape, origin)) {}
+  PatchKind(const SurfaceShape& shape, const Vec3d& origin) : mesh_(trace_patches(shape, origin)) {}
 
   uint32_t count() const override { return mesh_.count(); }
 
@@ -185,8 +180,7 @@ class AreaShape::PatchKind : public Kind {
   }
   static double density(const BilinearPatch& patch, const std::array<double, 4>& w, double u,
                         double v) {
-    const double here =
-        (w[0] * (1 - u) + w[1] * u) * (1 - v) + (w[2] * (1 - u) + w[3] * u) * v;
+    const double here = (w[0] * (1 - u) + w[1] * u) * (1 - v) + (w[2] * (1 - u) + w[3] * u) * v;
     const double stretch = patch.normal(u, v).length();
     const double sum = w[0] + w[1] + w[2] + w[3];
     return stretch > 0 && sum > 0 ? 4 * here / (sum * stretch) : 0;
@@ -245,8 +239,7 @@ class AreaShape::QuadricKind : public Kind {
     return density(traced_.part_to_object.point(Vec3d(point.position)));
   }
 
-  AreaSample sample_from(const Vec3f& from, uint32_t primitive, float u0,
-                         float u1) const override {
+  AreaSample sample_from(const Vec3f& from, uint32_t primitive, float u0, float u1) const override {
     const Cone cone = seen_from(from);
     if (!cone.is_outside) return Kind::sample_from(from, primitive, u0, u1);
     const double one_minus_cosine = u0 * cone.one_minus_cosine;
@@ -264,8 +257,7 @@ class AreaShape::QuadricKind : public Kind {
     const Vec3d position = Vec3d(from) + direction * t;
     return to_sample(traced_.describe(traced_.part_to_object.point(position)), cone.pdf());
   }
-  double pdf_from(const Vec3f& from, uint32_t primitive,
-                  const SurfacePoint& point) const override {
+  double pdf_from(const Vec3f& from, uint32_t primitive, const SurfacePoint& point) const override {
     const Cone cone = seen_from(from);
     if (!cone.is_outside) return Kind::pdf_from(from, primitive, point);
     const Vec3d centre = traced_.object_to_part.translation;
@@ -340,8 +332,7 @@ AreaSample AreaShape::sample(uint32_t primitive, float u0, float u1) const {
 float AreaShape::pdf(const SurfacePoint& point) const {
   return static_cast<float>(kind_->pdf(point.primitive - kind_->first, point));
 }
-AreaSample AreaShape::sample_from(const Vec3f& from, uint32_t primitive, float u0,
-                                  float u1) const {
+AreaSample AreaShape::sample_from(const Vec3f& from, uint32_t primitive, float u0, float u1) const {
   return kind_->sample_from(from, primitive - kind_->first, u0, u1);
 }
 float AreaShape::pdf_from(const Vec3f& from, const SurfacePoint& point) const {

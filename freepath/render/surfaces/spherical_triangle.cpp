@@ -18,8 +18,8 @@ double sine(double cosine) { return std::sqrt(std::max(0.0, (1 - cosine) * (1 + 
 
 SphericalTriangle::SphericalTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c)
     : a_(a.normalized()), b_(b.normalized()), c_(c.normalized()) {
-  solid_angle_ = 2 * std::atan2(std::abs(a_.dot(b_.cross(c_))),
-                                1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_));
+  solid_angle_ =
+      2 * std::atan2(std::abs(a_.dot(b_.cross(c_))), 1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_));
 }
 
 Vec3d SphericalTriangle::sample(double u0, double u1) const {
