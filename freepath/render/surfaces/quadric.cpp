@@ -85,7 +85,9 @@ bool Quadric::keeps(const Vec3d& p) const {
 QuadricRoots Quadric::intersect(const Vec3d& origin, const Vec3d& direction) const {
   QuadricRoots all;
   switch (kind_) {
-    case QuadricKind::kSphere: all = circle_roots(origin, direction, radius_); break;
+    case QuadricKind::kSphere:
+      all = circle_roots(origin, direction, radius_);
+      break;
     case QuadricKind::kCylinder:
       all = circle_roots({origin.x, origin.y, 0}, {direction.x, direction.y, 0}, radius_);
       break;
@@ -131,9 +133,7 @@ QuadricPoint Quadric::describe(const Vec3d& near_surface) const {
   return point;
 }
 
-Box3d Quadric::bounds() const {
-  return {{-radius_, -radius_, z_min_}, {radius_, radius_, z_max_}};
-}
+Box3d Quadric::bounds() const { return {{-radius_, -radius_, z_min_}, {radius_, radius_, z_max_}}; }
 
 bool Quadric::may_meet(const std::array<Vec3d, 8>& corners) const {
   // The box around the corners is as near to the centre as anything within them, and the farthest
@@ -167,14 +167,16 @@ Vec3d Quadric::sample(double u0, double u1) const {
   double z = z_min_;
   switch (kind_) {
     case QuadricKind::kDisk:
-      distance = std::sqrt(radius_ * radius_ +
-                           u1 * (inner_radius_ * inner_radius_ - radius_ * radius_));
+      distance =
+          std::sqrt(radius_ * radius_ + u1 * (inner_radius_ * inner_radius_ - radius_ * radius_));
       break;
     case QuadricKind::kSphere:  // by Archimedes, z is uniform
       z += u1 * (z_max_ - z_min_);
       distance = std::sqrt(std::max(0.0, (radius_ - z) * (radius_ + z)));
       break;
-    case QuadricKind::kCylinder: z += u1 * (z_max_ - z_min_); break;
+    case QuadricKind::kCylinder:
+      z += u1 * (z_max_ - z_min_);
+      break;
   }
   return {distance * std::cos(phi), distance * std::sin(phi), z};
 }

@@ -128,8 +128,7 @@ void Surfaces::Data::add_instances(const SurfaceScene& description) {
     to_origin.setTranslation(-origin);
     const Matrix4d matrix = from_middle * instance.instance_to_world * to_origin;
     if (!(std::abs(matrix.determinant()) > 0)) {
-      fail("the transform of instance {} has no inverse; scale by nothing but 0",
-           instances.size());
+      fail("the transform of instance {} has no inverse; scale by nothing but 0", instances.size());
     }
     instances.push_back({instance.group, AffineMap(matrix), AffineMap(matrix.inverse())});
     const AffineMap& map = instances.back().part_to_world;
@@ -167,8 +166,8 @@ void Surfaces::Data::note_offset(const TracedShape& shape, const Box3d& box,
   offset = std::max(offset, static_cast<float>(largest * kRoundings));
 }
 
-SurfaceQuery Surfaces::Data::query(QueryKind kind, const Vec3f& ray_origin,
-                                   const Vec3f& direction, float t_min) const {
+SurfaceQuery Surfaces::Data::query(QueryKind kind, const Vec3f& ray_origin, const Vec3f& direction,
+                                   float t_min) const {
   SurfaceQuery query{};
   rtcInitIntersectContext(&query.context);
   query.kind = kind;
@@ -213,8 +212,8 @@ SurfaceHit Surfaces::Data::describe(const RTCRayHit& found, const LocalRay& ray)
   const LocalPoint& p = at.point;
   const double across = p.normal.dot(ray.direction);
   hit.from_inside = across > 0;
-  hit.t = static_cast<float>((p.position - ray.origin).dot(ray.direction) /
-                             ray.direction.length2());
+  hit.t =
+      static_cast<float>((p.position - ray.origin).dot(ray.direction) / ray.direction.length2());
   hit.point.position = Vec3f(p.position);
   hit.point.normal = Vec3f(p.normal.normalized());
   const bool flip = p.shading_normal.dot(p.normal) < 0;
@@ -223,10 +222,9 @@ SurfaceHit Surfaces::Data::describe(const RTCRayHit& found, const LocalRay& ray)
   hit.point.u = p.uv.x;
   hit.point.v = p.uv.y;
   hit.point.shape = at.shape->shape;
-  const bool is_quadric =
-      found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID
-          ? world->is_quadric(found.hit.geomID)
-          : groups[instances[hit.instance].group]->is_quadric(found.hit.geomID);
+  const bool is_quadric = found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID
+                              ? world->is_quadric(found.hit.geomID)
+                              : groups[instances[hit.instance].group]->is_quadric(found.hit.geomID);
   hit.point.primitive = at.shape->first_primitive + (is_quadric ? 0 : found.hit.primID);
   return hit;
 }
@@ -273,8 +271,7 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
   constexpr float kRoundings = 4 * 0x1p-24F;
   const Vec3f& n = point.normal;
   const Vec3f& p = point.position;
-  const float error =
-      std::abs(n.x * p.x) + std::abs(n.y * p.y) + std::abs(n.z * p.z);
+  const float error = std::abs(n.x * p.x) + std::abs(n.y * p.y) + std::abs(n.z * p.z);
   const float offset = kRoundings * error + data_->smallest_offset[point.shape];
   return p + n * (n.dot(direction) < 0 ? -offset : offset);
 }
@@ -282,18 +279,18 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
 bool Surfaces::intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const {
   const Box3d relative(box.min - data_->origin, box.max - data_->origin);
   if (part_meets_box(*data_->world, AffineMap(), AffineMap(), shapes, relative)) return true;
-  return std::any_of(
-      data_->instances.begin(), data_->instances.end(), [&](const TracedInstance& instance) {
-        return part_meets_box(*data_->groups[instance.group], instance.part_to_world,
-                              instance.world_to_part, shapes, relative);
-      });
+  return std::any_of(data_->instances.begin(), data_->instances.end(),
+                     [&](const TracedInstance& instance) {
+                       return part_meets_box(*data_->groups[instance.group], instance.part_to_world,
+                                             instance.world_to_part, shapes, relative);
+                     });
 }
 
 bool Surfaces::is_inside(const Vec3f& point, std::span<const uint32_t> shapes) const {
   // Along no edge of anything that is built along axes or diagonals.
-  static const std::array<Vec3f, 3> kDirections = {
-      Vec3f(0.5377F, 0.6211F, 0.5703F), Vec3f(-0.7321F, 0.3187F, -0.6021F),
-      Vec3f(0.2239F, -0.8623F, -0.4541F)};
+  static const std::array<Vec3f, 3> kDirections = {Vec3f(0.5377F, 0.6211F, 0.5703F),
+                                                   Vec3f(-0.7321F, 0.3187F, -0.6021F),
+                                                   Vec3f(0.2239F, -0.8623F, -0.4541F)};
   int votes = 0;
   for (const Vec3f& direction : kDirections) {
     SurfaceQuery query = data_->query(QueryKind::kCount, point, direction, 0);

@@ -73,8 +73,8 @@ void offer(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const TracedShape& sha
   }
 }
 
-void meet_patch(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user,
-                unsigned geometry, unsigned primitive) {
+void meet_patch(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user, unsigned geometry,
+                unsigned primitive) {
   const auto& mesh = *static_cast<const TracedPatches*>(user);
   const LocalRay local = query.local_ray(query.context.instID[0]);
   const PatchRoots roots = mesh.patch(primitive).intersect(local.origin, local.direction);
@@ -90,8 +90,7 @@ void meet_patch(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user,
 
 void meet_quadric(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user,
                   unsigned geometry, unsigned primitive) {
-  const TracedQuadric& quadric =
-      (*static_cast<const std::vector<TracedQuadric>*>(user))[primitive];
+  const TracedQuadric& quadric = (*static_cast<const std::vector<TracedQuadric>*>(user))[primitive];
   const LocalRay local = query.local_ray(query.context.instID[0]);
   const LocalRay object = quadric.to_object(local);
   const QuadricRoots roots = quadric.quadric.intersect(object.origin, object.direction);
@@ -206,8 +205,7 @@ void TracedPart::attach(RTCDevice device, RTCScene scene) const {
   for (const TracedTriangles& mesh : triangles) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               mesh.positions.data(), 0, sizeof(Vec3f),
-                               mesh.positions.size() - 1);
+                               mesh.positions.data(), 0, sizeof(Vec3f), mesh.positions.size() - 1);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                mesh.indices.data(), 0, 3 * sizeof(uint32_t), mesh.count());
     rtcSetGeometryUserData(geometry, const_cast<TracedTriangles*>(&mesh));
@@ -216,12 +214,10 @@ void TracedPart::attach(RTCDevice device, RTCScene scene) const {
     hand_over(scene, geometry, number++);
   }
   for (const TracedPatches& mesh : patches) {
-    hand_over(scene, user_geometry<meet_patch>(device, mesh.count(), &mesh, bound_patch),
-              number++);
+    hand_over(scene, user_geometry<meet_patch>(device, mesh.count(), &mesh, bound_patch), number++);
   }
   if (!quadrics.empty()) {
-    hand_over(scene,
-              user_geometry<meet_quadric>(device, quadrics.size(), &quadrics, bound_quadric),
+    hand_over(scene, user_geometry<meet_quadric>(device, quadrics.size(), &quadrics, bound_quadric),
               number++);
   }
 }

@@ -43,9 +43,9 @@ struct SurfaceQuery {
   LocalRay ray;  ///< In the world, relative to the origin of rays.
   double t_min;
   std::span<const TracedInstance> instances;
-  unsigned first_instance;  ///< Geometry number of the first instance.
-  BoundaryCrossings* crossings = nullptr;   ///< For kOcclusion.
-  std::span<const uint32_t> counted = {};   ///< For kCount: the shapes.
+  unsigned first_instance;                 ///< Geometry number of the first instance.
+  BoundaryCrossings* crossings = nullptr;  ///< For kOcclusion.
+  std::span<const uint32_t> counted = {};  ///< For kCount: the shapes.
   uint32_t count = 0;
 
   /// The ray in the space of the geometry that a callback is about.
@@ -70,9 +70,7 @@ class TracedPart {
 
   /// Adds all shapes to a scene that has nothing in it yet.
   void attach(RTCDevice device, RTCScene scene) const;
-  bool is_quadric(unsigned geometry) const {
-    return geometry >= triangles.size() + patches.size();
-  }
+  bool is_quadric(unsigned geometry) const { return geometry >= triangles.size() + patches.size(); }
   unsigned geometry_count() const {
     return static_cast<unsigned>(triangles.size() + patches.size() + (quadrics.empty() ? 0 : 1));
   }

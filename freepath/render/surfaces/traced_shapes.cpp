@@ -77,22 +77,25 @@ double TracedTriangles::distance(uint32_t triangle, const LocalRay& ray) const {
 
 LocalPoint TracedTriangles::describe(uint32_t triangle, float u, float v,
                                      const LocalRay& ray) const {
+  LocalPoint point = describe(triangle, u, v);
+  const double across = point.normal.dot(ray.direction);
+  constexpr double kGrazing = 1e-5;
+  if (std::abs(across) > kGrazing * point.normal.length() * ray.direction.length()) {
+    const double t = point.normal.dot(point.position - ray.origin) / across;
+    point.position = ray.origin + ray.direction * t;
+  }
+  return point;
+}
+
+LocalPoint TracedTriangles::describe(uint32_t triangle, float u, float v) const {
   const std::size_t first = std::size_t{3} * triangle;
   const Vec3d p0 = position(first);
   const Vec3d edge1 = position(first + 1) - p0;
   const Vec3d edge2 = position(first + 2) - p0;
   const uint32_t* index = &indices[first];
   LocalPoint point;
+  point.position = p0 + edge1 * u + edge2 * v;
   point.normal = normal(triangle, u, v);
-  // On the ray, unless it grazes the plane: then in the plane at least.
-  const double across = point.normal.dot(ray.direction);
-  constexpr double kGrazing = 1e-5;
-  if (std::abs(across) > kGrazing * point.normal.length() * ray.direction.length()) {
-    point.position =
-        ray.origin + ray.direction * (point.normal.dot(p0 - ray.origin) / across);
-  } else {
-    point.position = p0 + edge1 * u + edge2 * v;
-  }
   point.shading_normal = point.normal;
   if (!normals.empty()) {
     const Vec3f smooth =
@@ -155,9 +158,7 @@ LocalPoint TracedPatches::describe(uint32_t index, double u, double v) const {
     if (interpolated.length2() > 0) point.shading_normal = interpolated;
   }
   if (!uvs.empty()) {
-    const auto corner_uv = [&](int i) {
-      return Vec3d(uvs[corner[i]].x, uvs[corner[i]].y, 0);
-    };
+    const auto corner_uv = [&](int i) { return Vec3d(uvs[corner[i]].x, uvs[corner[i]].y, 0); };
     const BilinearPatch texture{corner_uv(0), corner_uv(1), corner_uv(2), corner_uv(3)};
     const Vec3d st = texture.at(u, v);
     point.uv = Vec2f(static_cast<float>(st.x), static_cast<float>(st.y));

@@ -58,6 +58,9 @@ struct TracedTriangles : TracedVertices {
   /// Where a line meets the plane of a triangle. In doubles, so that a ray that starts a few
   /// roundings off the plane never meets it again. Not finite where they are parallel.
   double distance(uint32_t triangle, const LocalRay& ray) const;
+  LocalPoint describe(uint32_t triangle, float u, float v) const;
+  /// With the position on the ray, if it does not graze the triangle: that has more digits than the
+  /// barycentric coordinates.
   LocalPoint describe(uint32_t triangle, float u, float v, const LocalRay& ray) const;
 };
 
