@@ -56,7 +56,9 @@ class MaterialWorld {
     return {add(named_spectrum("metal-Au-eta"), SpectrumRole::kReflectance),
             add(named_spectrum("metal-Au-k"), SpectrumRole::kReflectance)};
   }
-  SpectrumId flint() { return add(named_spectrum("glass-SF5"), SpectrumRole::kIndex); }
+  SpectrumId flint() const { return flint_; }
+
+  Channels eta_of_flint(const SurfaceContext& context) const { return context.spectra[flint_]; }
 
  private:
   SpectrumId add(SpectralDistribution::Kind spectrum, SpectrumRole role) {
@@ -128,6 +130,7 @@ class MaterialWorld {
 
   SpectrumTable table_{rgb_color_space("srgb")};
   TextureTable textures_;
+  SpectrumId flint_ = add(named_spectrum("glass-F5"), SpectrumRole::kIndex);
   SpectrumValues rgb_, spectral_;
   std::vector<NamedMaterial> materials_;
 };

@@ -21,8 +21,8 @@ struct MaterialSample {
   /// f |cosine| / density. With hero_only it is 0 in all channels but the hero's, where
   /// SurfaceContext::hero_factor is in it.
   Channels weight;
-  float pdf = 0;             ///< [1/sr]; 0 of a specular event, which no evaluate() covers.
-  bool specular = false;     ///< The direction had no choice.
+  float pdf = 0;             ///< [1/sr]; 0 of a specular event.
+  bool specular = false;     ///< The direction had no choice, so that no evaluate() covers it.
   bool transmitted = false;  ///< To the other side of the surface.
   bool hero_only = false;    ///< From here on SurfaceContext::only_hero is true.
 };
