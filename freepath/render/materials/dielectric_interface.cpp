@@ -74,8 +74,9 @@ std::optional<InterfaceSample> DielectricInterface::sample(const Vec3f& out, Ran
   const std::optional<Vec3f> in = refracted(above, facet, eta);
   if (!in || in->z >= 0) return std::nullopt;
   const float masking = specular_ ? 1.0F : facets_.masking_of_other(above, *in);
-  const float pdf =
-      normal_pdf * refraction_jacobian(cosine, in->dot(facet), eta) * shares.transmission;
+  const float pdf = specular_ ? 0.0F
+                              : normal_pdf * refraction_jacobian(cosine, in->dot(facet), eta) *
+                                    shares.transmission;
   return InterfaceSample{
       with_side(*in, side),
       (1.0F - reflectance) / shares.transmission * masking * refraction_scale(eta, mode), pdf,

@@ -79,10 +79,12 @@ std::optional<LobeSample> LayeredLobe<Bottom>::sample(const Vec3f& out,
   const Vec3f above = with_side(out, side);
   const std::optional<InterfaceSample> entered = top_.sample(above, random);
   if (!entered) return std::nullopt;
-  bool specular = top_.is_specular();
+  // Whether evaluate() has this walk: between two specular interfaces it connects from the medium
+  // straight through the top only.
+  bool connected = !top_.is_specular();
   const auto left = [&](const Vec3f& in, const Channels& weight) {
-    return LobeSample{with_side(in, side), weight, specular ? 0.0F : approximate_pdf(above, in),
-                      specular};
+    return LobeSample{with_side(in, side), weight, connected ? approximate_pdf(above, in) : 0.0F,
+                      !connected};
   };
   if (!entered->transmitted) return left(entered->direction, Channels(entered->weight));
   State state{Channels(entered->weight), entered->direction, medium_.thickness};
@@ -93,7 +95,7 @@ std::optional<LobeSample> LayeredLobe<Bottom>::sample(const Vec3f& out,
         const float u0 = random.uniform();
         state.direction = phase_.sample(state.direction, u0, random.uniform()).direction;
         state.weight *= medium_.albedo;
-        specular = false;
+        connected = true;
         continue;
       }
     } else {
@@ -105,7 +107,7 @@ std::optional<LobeSample> LayeredLobe<Bottom>::sample(const Vec3f& out,
       if (!reflected) break;
       state.weight *= reflected->weight;
       state.direction = reflected->direction;
-      specular = specular && reflected->specular;
+      connected = !(top_.is_specular() && reflected->specular);
     } else {
       const std::optional<InterfaceSample> met = top_.sample(-state.direction, random);
       if (!met) break;

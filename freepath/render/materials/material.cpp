@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <type_traits>
-#include <utility>
 
 #include "freepath/base/error.h"
 #include "freepath/render/materials/surface_frame.h"
@@ -39,7 +38,7 @@ constexpr bool kIsMix = std::is_same_v<Kind, MixMaterial>;
 
 }  // namespace
 
-Material::Material(Kind kind) : kind_(std::move(kind)) {
+void Material::check() const {
   if (const auto* const mix = std::get_if<MixMaterial>(&kind_)) {
     if (!mix->first || !mix->second) fail("a mix needs two materials");
   } else if (const auto* const diffuse = std::get_if<CoatedDiffuseMaterial>(&kind_)) {

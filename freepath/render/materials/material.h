@@ -2,6 +2,8 @@
 /// @file How a surface scatters light.
 
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "freepath/base/channels.h"
@@ -19,8 +21,8 @@ struct MaterialSample {
   /// f |cosine| / density. With hero_only it is 0 in all channels but the hero's, where
   /// SurfaceContext::hero_factor is in it.
   Channels weight;
-  float pdf = 0;             ///< [1/sr]; 0 of a specular event, which no evaluate() covers.
-  bool specular = false;     ///< The direction had no choice.
+  float pdf = 0;             ///< [1/sr]; 0 of a specular event.
+  bool specular = false;     ///< The direction had no choice, so that no evaluate() covers it.
   bool transmitted = false;  ///< To the other side of the surface.
   bool hero_only = false;    ///< From here on SurfaceContext::only_hero is true.
 };
@@ -43,7 +45,11 @@ class Material {
                    CoatedDiffuseMaterial, CoatedConductorMaterial, MixMaterial>;
 
   /// @throws Error if a mix lacks a material, or a coating has no walks or interactions
-  Material(Kind kind);
+  Material(Kind kind) : kind_(std::move(kind)) { check(); }
+  /// Of one of the kinds.
+  template <class T>
+    requires std::is_constructible_v<Kind, T>
+  Material(T kind) : Material(Kind(std::move(kind))) {}
 
   /// Draws where a path goes on; nothing if it ends.
   /// @param travel direction of travel before, unit [world]
@@ -69,6 +75,7 @@ class Material {
   const Kind& kind() const { return kind_; }
 
  private:
+  void check() const;
   /// The one that a mix chooses, itself for others: by a hash of place and direction, so that
   /// sample() and evaluate() at a hit agree.
   const Material& resolved(const SurfacePoint& point, const Vec3f& travel,
