@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "apps/freepath/frames.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/render_pictures.h"
+#include "apps/freepath/render_scene.h"
 #include "apps/freepath/render_volumes.h"
 #include "freepath/base/error.h"
 #include "freepath/scene/volume_scene.h"
@@ -42,6 +44,9 @@ frame. Ctrl-C writes the frame under way and ends the sequence.
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
 Methods take options after their name: weighted-delta:rate-scale=0.7
 
+A scene of pbrt-v4 (.pbrt) says itself what is rendered; -o, --size, --spp, --seed and the methods
+take the place of what it says. Its parameters are listed in docs/scenes.md.
+
 Examples:
   freepath render cloud.vdb -o cloud.exr -o cloud.png
   freepath render cloud.vdb -o cloud.png --spp 256 --size 960x540 --albedo 0.999 --g 0.8
@@ -50,6 +55,7 @@ Examples:
   freepath render cloud.vdb -o furnace.exr --albedo 1 --environment 1 --stats stats.json
   freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio
   freepath render smoke.vdb fire.vdb -o both.exr --albedo 0.6 --albedo 0.2 --le 0 --le 9,3,0.5
+  freepath render scene.pbrt -o scene.exr --spp 256 --color spectral
   freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral
   freepath render smoke.%04d.vdb --frames 1-48 -o picture.%04d.exr --spp 64)";
 
@@ -78,7 +84,7 @@ struct Options {
   std::string tracker = "delta", transmittance = "ratio", interpolation = "stochastic";
   std::string absorption = "weighted";
   std::vector<std::string> emission;
-  std::string simd = "best";
+  std::string simd = "best", color;
   int super_voxel = 0;
   std::string up = "y", look_at;
   double fov = CameraOptions{}.fov;
@@ -186,7 +192,56 @@ RenderSettings read_settings(const Options& options) {
   return settings;
 }
 
-void run(const Options& options) {
+/// Options that a scene's file has the say in.
+void check_scene_options(const CLI::App& command) {
+  constexpr const char* kOfVolumes[] = {
+      "--grid",     "--density-scale", "--albedo", "--sigma-a",   "--sigma-s", "--g",   "--le",
+      "--negative", "--environment",   "--sun",    "--turbidity", "--look-at", "--fov", "--up",
+      "--frames",   "--super-voxel"};
+  for (const char* name : kOfVolumes) {
+    const CLI::Option* const option = command.get_option_no_throw(name);
+    if (option != nullptr && option->count() > 0) {
+      fail("{} is for volumes: of a scene its file says that", name);
+    }
+  }
+}
+
+void run_scene(const CLI::App& command, const Options& options) {
+  if (options.volumes.files.size() > 1) {
+    fail("'{}' is a scene: it is rendered alone, without other files", options.volumes.files[0]);
+  }
+  check_scene_options(command);
+  constexpr std::array kColors{Choice<ColorMode>{"rgb", ColorMode::kRgb},
+                               Choice<ColorMode>{"spectral", ColorMode::kSpectral}};
+  const auto given = [&](const char* name) { return command.count(name) > 0; };
+  ScenePlan plan;
+  plan.file = options.volumes.files[0];
+  plan.outputs = options.outputs;
+  plan.stats = options.stats;
+  plan.settings = read_settings(options);
+  plan.exposure = options.exposure;
+  if (given("--size")) {
+    plan.size = parse_size(options.size, "--size");
+    check_memory(*plan.size);
+  }
+  if (given("--spp")) plan.samples = options.samples;
+  if (given("--seed")) plan.seed = options.seed;
+  if (given("--max-scatterings")) plan.max_scatterings = options.max_scatterings;
+  if (given("--tracker")) plan.tracker = plan.settings.walk.tracker;
+  if (given("--transmittance")) plan.transmittance = plan.settings.walk.transmittance;
+  if (given("--interpolation")) plan.interpolation = plan.settings.walk.interpolation;
+  if (given("--color")) plan.color = parse_choice(options.color, "--color", kColors);
+  render_scene_file(plan);
+}
+
+void run(const CLI::App& command, const Options& options) {
+  const auto& files = options.volumes.files;
+  if (std::any_of(files.begin(), files.end(), is_scene_file)) return run_scene(command, options);
+  if (options.outputs.empty()) fail("-o is required: the picture to write, .exr or .png");
+  if (command.count("--color") > 0 && options.color != "rgb") {
+    fail("--color {}: volumes are rendered in rgb, scenes (.pbrt) in rgb or spectral",
+         options.color);
+  }
   // All that can be wrong with the options is said before the first second of work.
   const std::vector<PictureFiles> pictures =
       plan_pictures(options.frames, {.frame = {},
@@ -210,9 +265,12 @@ void run(const Options& options) {
 
 void add_picture_options(CLI::App& command, Options& o) {
   command.add_option("-o,--output", o.outputs, "Picture to write, .exr or .png; may be repeated")
-      ->required()
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group("Picture");
+  command
+      .add_option("--color", o.color,
+                  "Of a scene: rgb, or spectral, four wavelengths of each sample [spectral]")
       ->group("Picture");
   command.add_option("--size", o.size, "Picture size, WIDTHxHEIGHT")
       ->capture_default_str()
@@ -324,15 +382,17 @@ void add_render_command(CLI::App& program) {
   command->footer(kFooter);
   const auto options = std::make_shared<Options>();
   command
-      ->add_option("volume", options->volumes.files,
-                   "Volume files, .vdb or .nvdb; several overlap, each where its file puts it")
+      ->add_option(
+          "volume", options->volumes.files,
+          "Volume files, .vdb or .nvdb, which overlap, each where its file puts it; or one "
+          "scene, .pbrt")
       ->required();
   add_picture_options(*command, *options);
   add_volume_options(*command, options->volumes);
   add_light_options(*command, *options);
   add_method_options(*command, *options);
   add_run_options(*command, *options);
-  command->callback([options] { run(*options); });
+  command->callback([command, options] { run(*command, *options); });
 }
 
 }  // namespace freepath::program

@@ -170,6 +170,12 @@ Medium Medium::with_scaled_bounds(float scale) const {
   return scaled;
 }
 
+Medium Medium::clipped_to_voxels() const {
+  Medium clipped = *this;
+  clipped.is_clipped_ = true;
+  return clipped;
+}
+
 AffineMap Medium::world_to_walk(const Vec3d& origin) const {
   AffineMap map;
   for (int to = 0; to < 3; ++to) {
@@ -216,7 +222,7 @@ AffineMap Medium::walk_to_field(const Field& field) const {
 
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
   if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels_.counts)};
-  const double reach = interpolation == Interpolation::kNearest ? 0.5 : 1.0;
+  const double reach = is_clipped_ || interpolation == Interpolation::kNearest ? 0.5 : 1.0;
   const double scale = 1.0 / super_voxels_.cell_size;
   const Box3d places = space_.bounds(fields(), reach);
   return {Vec3f(places.min * scale), Vec3f(places.max * scale)};

@@ -62,6 +62,10 @@ class Medium {
   /// what bounds cost, and to test what notices wrong ones.
   Medium with_scaled_bounds(float scale) const;
 
+  /// The same medium, cut off at the faces of its outermost active voxels, where the filter's reach
+  /// would let it fade over another half of a voxel.
+  Medium clipped_to_voxels() const;
+
   const std::vector<Component>& components() const { return components_; }
   const SuperVoxels& super_voxels() const { return super_voxels_; }
   /// Whether all components share transform and layout of bricks, so that one voxel serves all.
@@ -107,6 +111,7 @@ class Medium {
   WalkCells walk_cells_;
   WalkSpace space_;
   Matrix4d world_to_walk_;
+  bool is_clipped_ = false;
 };
 
 }  // namespace freepath

@@ -50,6 +50,7 @@ struct PathScene {
   std::optional<SceneLights> lights;
   std::optional<SceneCamera> camera;
   MediumId camera_medium = kVacuum;
+  float exposure_scale = 1;  ///< What the film multiplies radiance by.
   PixelFilter filter;
   SampleKind samples = SampleKind::kSobol;
   /// Of each medium: whether no surface passes through its bounds and all of them are filled with

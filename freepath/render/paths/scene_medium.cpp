@@ -166,7 +166,7 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
       target.emission[c] = colors.radiance_scale * static_cast<float>(kMediumRadiance);
     }
   }
-  bound.medium = std::make_shared<const Medium>(std::move(components));
+  bound.medium = std::make_shared<const Medium>(Medium(std::move(components)).clipped_to_voxels());
   return bound;
 }
 

@@ -368,7 +368,8 @@ void SceneWavefront::finish(ScenePath& path) {
     ++job_counts_.overflows;
     return;
   }
-  sample.radiance += to_spectrum(path.colors->spectra.to_rgb(path.radiance));
+  sample.radiance +=
+      to_spectrum(path.colors->spectra.to_rgb(path.radiance) * scene_.exposure_scale);
   const auto share = 1.0F / static_cast<float>(setup_.factory->paths_per_sample());
   sample.alpha += path.sample.alpha * share;
   sample.albedo += path.sample.albedo * share;

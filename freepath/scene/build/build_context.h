@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/scene/pbrt/diagnostics.h"
@@ -22,6 +24,8 @@ struct BuildContext {
   PathScene& scene;
   /// Names of media → PathScene::media.
   std::map<std::string, MediumId, std::less<>> media;
+  /// PbrtScene::materials → PathScene::materials; none is a mere boundary.
+  std::vector<std::optional<uint32_t>> materials;
 };
 
 /// Which spectrum a parameter's colour stands for.

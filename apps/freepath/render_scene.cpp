@@ -1,0 +1,120 @@
+#include "apps/freepath/render_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "apps/freepath/progress_bar.h"
+#include "apps/freepath/render_output.h"
+#include "freepath/base/error.h"
+#include "freepath/io/image.h"
+#include "freepath/render/paths/scene_renderer.h"
+#include "freepath/scene/build/scene_builder.h"
+#include "freepath/transport/auto_tracker.h"
+
+namespace freepath::program {
+namespace {
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Trackers where nobody names one: the cheapest that carries all channels of every medium.
+std::string standard_tracker(const PathScene& scene) {
+  const SpectrumValues rgb = scene.spectra->in_rgb();
+  const bool grey = std::all_of(
+      scene.media.begin(), scene.media.end(),
+      [&](const SceneMedium& medium) { return medium.bind(rgb).channels.has_grey_extinction(); });
+  return grey ? "delta" : "spectral";
+}
+
+Interpolation parse_interpolation(const std::string& name) {
+  if (name == "nearest") return Interpolation::kNearest;
+  if (name == "trilinear") return Interpolation::kTrilinear;
+  if (name == "stochastic") return Interpolation::kStochastic;
+  fail("there is no interpolation '{}'; known are nearest, trilinear, stochastic", name);
+}
+
+/// What the command line says, else the scene, else what is standard.
+RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
+  RenderSettings settings = plan.settings;
+  const PictureSettings& picture = built.picture;
+  settings.samples = plan.samples.value_or(settings.time_limit > 0 ? 0 : picture.samples);
+  settings.max_scatterings = plan.max_scatterings.value_or(picture.max_scatterings);
+  WalkSettings& walk = settings.walk;
+  walk.seed = plan.seed.value_or(picture.seed);
+  walk.tracker = plan.tracker.value_or(picture.tracker);
+  if (walk.tracker.empty() || walk.tracker == kAutoTracker) {
+    walk.tracker = standard_tracker(built.scene);
+  }
+  walk.tracker = to_string(parse_method(walk.tracker, tracker_infos()), tracker_infos());
+  walk.transmittance =
+      plan.transmittance.value_or(picture.transmittance.empty() ? "ratio" : picture.transmittance);
+  walk.transmittance =
+      to_string(parse_method(walk.transmittance, transmittance_infos()), transmittance_infos());
+  if (plan.interpolation) {
+    walk.interpolation = *plan.interpolation;
+  } else if (!picture.interpolation.empty()) {
+    walk.interpolation = parse_interpolation(picture.interpolation);
+  }
+  return settings;
+}
+
+std::vector<std::string> outputs_of(const ScenePlan& plan, const BuiltScene& built) {
+  std::vector<std::string> outputs = plan.outputs;
+  if (outputs.empty()) {
+    if (built.picture.file_name.empty()) {
+      fail("{}: neither its film nor -o names a picture to write", plan.file);
+    }
+    outputs.push_back(built.picture.file_name);
+  }
+  for (const std::string& output : outputs) check_writable(output);
+  return outputs;
+}
+
+}  // namespace
+
+bool is_scene_file(const std::string& file) {
+  return ends_with(file, ".pbrt") || ends_with(file, ".pbrt.gz");
+}
+
+void render_scene_file(const ScenePlan& plan) {
+  check_statistics_file(plan.stats, plan.outputs, {plan.file});
+  RenderReport report;
+  Stopwatch watch;
+  Diagnostics diagnostics;
+  BuildOptions options;
+  if (plan.size) options.size = FilmSize{plan.size->width, plan.size->height};
+  BuiltScene built = load_scene(plan.file, diagnostics, options);
+  for (const std::string& warning : diagnostics.warnings()) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  const std::vector<std::string> outputs = outputs_of(plan, built);
+  report.settings = settle(plan, built);
+  report.threads = plan.settings.threads;
+  report.volumes.push_back({plan.file, {}});
+  report.seconds_load = watch.lap();
+  warn_if_biased(report.settings.walk.tracker);
+
+  const StopOnInterrupt stop;
+  const SceneCamera& camera = *built.scene.camera;
+  const ProgressBar bar(std::size_t(camera.width()) * camera.height(), plan.settings.time_limit);
+  const RenderResult result =
+      render_scene(built.scene, plan.color, report.settings, [&](const RenderProgress& progress) {
+        bar.show(progress);
+        return !stop.requested();
+      });
+  bar.finish();
+  if (result.most_samples == 0) {
+    fail("{} after {:.1f} s, before any pixel had a sample: nothing is written",
+         result.interrupted ? "interrupted" : "the time was up", result.seconds);
+  }
+  report.seconds_render = result.seconds;
+  write_outputs(outputs, plan.exposure, result, report);
+  if (!plan.stats.empty()) write_statistics(plan.stats, result, report);
+  print_summary(outputs, result, report);
+}
+
+}  // namespace freepath::program

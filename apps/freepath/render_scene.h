@@ -1,0 +1,38 @@
+#pragma once
+/// @file Rendering the scene of a pbrt file.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/freepath/parse.h"
+#include "freepath/render/paths/path_scene.h"
+#include "freepath/render/renderer.h"
+
+namespace freepath::program {
+
+/// What the command line says of a scene; what it does not say, the scene's file decides.
+struct ScenePlan {
+  std::string file;
+  std::vector<std::string> outputs;  ///< None: the film's file name.
+  std::string stats;                 ///< May be empty.
+  std::optional<PictureSize> size;
+  std::optional<uint32_t> samples;
+  std::optional<uint64_t> seed;
+  std::optional<uint32_t> max_scatterings;
+  std::optional<std::string> tracker, transmittance;
+  std::optional<Interpolation> interpolation;
+  ColorMode color = ColorMode::kSpectral;
+  RenderSettings settings;  ///< All else.
+  double exposure = 0;
+};
+
+/// Whether a file is a scene, by its name: *.pbrt or *.pbrt.gz.
+bool is_scene_file(const std::string& file);
+
+/// Renders and writes the picture of a scene; Ctrl-C while it is rendered ends it early.
+/// @throws Error as the parser, the builder, the renderer and the writers
+void render_scene_file(const ScenePlan& plan);
+
+}  // namespace freepath::program

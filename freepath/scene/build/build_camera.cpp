@@ -1,0 +1,269 @@
+#include "freepath/scene/build/build_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+#include "freepath/base/error.h"
+#include "freepath/base/nearest_name.h"
+#include "freepath/scene/build/build_media.h"
+
+namespace freepath {
+namespace {
+
+[[noreturn]] void fail_unknown(const PbrtEntity& entity, std::string_view what,
+                               std::span<const std::string_view> known) {
+  std::string names;
+  for (const std::string_view name : known) {
+    names += names.empty() ? "" : ", ";
+    names += name;
+  }
+  const std::string_view nearest = nearest_name(entity.type, known);
+  fail_at(entity.location, "there is no {} {}{}; known are {}", what, in_quotes(entity.type),
+          nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest), names);
+}
+
+std::optional<double> given_float(const ParameterList& list, std::string_view name) {
+  if (!list.type_of(name)) return {};
+  return list.get_float(name, 0);
+}
+
+/// Parameters that change nothing in a picture of ours.
+void pass_over(const ParameterList& list, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) list.type_of(name);
+}
+
+void warn_if_given(BuildContext& context, const ParameterList& list, std::string_view name,
+                   std::string_view why) {
+  if (!list.type_of(name)) return;
+  context.diagnostics.warn(list.location_of(name), fmt::format("'{}' {}", name, why));
+}
+
+std::optional<ScreenWindow> screen_window(const ParameterList& list) {
+  const std::span<const double> window = list.get_floats("screenwindow");
+  if (window.empty()) return {};
+  if (window.size() != 4) {
+    fail_at(list.location_of("screenwindow"),
+            "'screenwindow' has {} values; it needs x minimum, x maximum, y minimum, y maximum",
+            window.size());
+  }
+  return ScreenWindow{window[0], window[1], window[2], window[3]};
+}
+
+void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) {
+  if (!context.pbrt.film) return;
+  const PbrtEntity& film = *context.pbrt.film;
+  const ParameterList& list = film.parameters;
+  constexpr std::string_view kKnown[] = {"rgb", "gbuffer", "spectral"};
+  if (std::find(std::begin(kKnown), std::end(kKnown), film.type) == std::end(kKnown)) {
+    fail_unknown(film, "film", kKnown);
+  }
+  if (film.type == "spectral") {
+    context.diagnostics.warn(film.location,
+                             "a film of type 'spectral' is written as R, G, B: there are no layers "
+                             "of wavelengths yet");
+    pass_over(list, {"nbuckets", "lambdamin", "lambdamax"});
+  }
+  size.width = list.get_integer("xresolution", size.width);
+  size.height = list.get_integer("yresolution", size.height);
+  if (size.width < 1 || size.height < 1 || double(size.width) * size.height > 1e9) {
+    fail_at(film.location, "a film of {} x {} pixels can't be rendered", size.width, size.height);
+  }
+  picture.file_name = list.get_string("filename", "");
+  const double iso = list.get_float("iso", 100);
+  const std::string sensor = list.get_string("sensor", "cie1931");
+  if (sensor != "cie1931") {
+    context.diagnostics.warn(list.location_of("sensor"),
+                             fmt::format("there is no sensor {}: the picture is made for the "
+                                         "observer 'cie1931'",
+                                         in_quotes(sensor)));
+  }
+  double shutter = 1;
+  if (context.pbrt.camera) {
+    const ParameterList& camera = context.pbrt.camera->parameters;
+    shutter = camera.get_float("shutterclose", 1) - camera.get_float("shutteropen", 0);
+  }
+  picture.exposure_scale = static_cast<float>(shutter * iso / 100);
+  if (!(picture.exposure_scale > 0)) {
+    fail_at(film.location, "the exposure, iso / 100 times the time that the shutter is open, is {}",
+            picture.exposure_scale);
+  }
+  warn_if_given(context, list, "maxcomponentvalue",
+                "is left out: to clip samples would bias the picture");
+  warn_if_given(context, list, "cropwindow", "is left out: the whole picture is rendered");
+  warn_if_given(context, list, "pixelbounds", "is left out: the whole picture is rendered");
+  pass_over(list, {"diagonal", "savefp16", "coordinatesystem"});
+  list.report_unused(context.diagnostics);
+}
+
+void read_sampler(BuildContext& context, PictureSettings& picture) {
+  if (!context.pbrt.sampler) return;
+  const PbrtEntity& sampler = *context.pbrt.sampler;
+  const ParameterList& list = sampler.parameters;
+  constexpr std::string_view kKnown[] = {"independent", "halton",  "sobol",     "zsobol",
+                                         "paddedsobol", "pmj02bn", "stratified"};
+  if (std::find(std::begin(kKnown), std::end(kKnown), sampler.type) == std::end(kKnown)) {
+    fail_unknown(sampler, "sampler", kKnown);
+  }
+  const bool independent = sampler.type == "independent";
+  context.scene.samples = independent ? SampleKind::kIndependent : SampleKind::kSobol;
+  if (!independent && sampler.type != "sobol" && sampler.type != "paddedsobol") {
+    context.diagnostics.warn(
+        sampler.location,
+        fmt::format("the sampler '{}' is the one of padded Sobol' points here", sampler.type));
+  }
+  int samples = list.get_integer("pixelsamples", 16);
+  if (sampler.type == "stratified") {
+    samples = list.get_integer("xsamples", 4) * list.get_integer("ysamples", 4);
+    pass_over(list, {"jitter"});
+  }
+  if (samples < 1) fail_at(sampler.location, "there have to be samples, not {}", samples);
+  picture.samples = static_cast<uint32_t>(samples);
+  picture.seed = static_cast<uint64_t>(list.get_integer("seed", static_cast<int>(picture.seed)));
+  pass_over(list, {"randomization"});
+  list.report_unused(context.diagnostics);
+}
+
+void read_integrator(BuildContext& context, PictureSettings& picture) {
+  if (!context.pbrt.integrator) return;
+  const PbrtEntity& integrator = *context.pbrt.integrator;
+  const ParameterList& list = integrator.parameters;
+  constexpr std::string_view kKnown[] = {"volpath", "path"};
+  if (std::find(std::begin(kKnown), std::end(kKnown), integrator.type) == std::end(kKnown)) {
+    context.diagnostics.warn(integrator.location, fmt::format("the integrator {} is 'volpath' here",
+                                                              in_quotes(integrator.type)));
+  }
+  const int depth = list.get_integer("maxdepth", 5);
+  if (depth < 0) fail_at(list.location_of("maxdepth"), "'maxdepth' is {}", depth);
+  picture.max_scatterings = static_cast<uint32_t>(depth);
+  if (list.get_bool("regularize", false)) {
+    context.diagnostics.warn(list.location_of("regularize"),
+                             "'regularize' is left out: it would bias the picture");
+  }
+  picture.tracker = list.get_string("tracker", "");
+  picture.transmittance = list.get_string("transmittance", "");
+  picture.interpolation = list.get_string("interpolation", "");
+  pass_over(list, {"lightsampler"});
+  list.report_unused(context.diagnostics);
+}
+
+PixelFilter make_filter(BuildContext& context) {
+  if (!context.pbrt.filter) return PixelFilter();
+  const PbrtEntity& filter = *context.pbrt.filter;
+  const ParameterList& list = filter.parameters;
+  const auto with_radii = [&](auto model) {
+    model.x_radius = list.get_float("xradius", model.x_radius);
+    model.y_radius = list.get_float("yradius", model.y_radius);
+    return model;
+  };
+  const auto make = [&]() -> FilterModel {
+    if (filter.type == "box") return with_radii(BoxFilter());
+    if (filter.type == "triangle") return with_radii(TriangleFilter());
+    if (filter.type == "gaussian") {
+      GaussianFilter model = with_radii(GaussianFilter());
+      model.sigma = list.get_float("sigma", model.sigma);
+      return model;
+    }
+    if (filter.type == "mitchell") {
+      MitchellFilter model = with_radii(MitchellFilter());
+      model.b = list.get_float("B", model.b);
+      model.c = list.get_float("C", model.c);
+      return model;
+    }
+    if (filter.type == "sinc") {
+      SincFilter model = with_radii(SincFilter());
+      model.tau = list.get_float("tau", model.tau);
+      return model;
+    }
+    constexpr std::string_view kKnown[] = {"box", "gaussian", "mitchell", "sinc", "triangle"};
+    fail_unknown(filter, "pixel filter", kKnown);
+  };
+  const FilterModel model = make();
+  list.report_unused(context.diagnostics);
+  return at_location(filter.location, [&] { return PixelFilter(model); });
+}
+
+CameraModel make_camera_model(const PbrtEntity& camera) {
+  const ParameterList& list = camera.parameters;
+  const auto read_lens = [&](Lens& lens) {
+    lens.radius = list.get_float("lensradius", lens.radius);
+    lens.focal_distance = list.get_float("focaldistance", lens.focal_distance);
+  };
+  if (camera.type == "perspective") {
+    PerspectiveCamera model;
+    model.fov = list.get_float("fov", model.fov);
+    model.frame_aspect_ratio = given_float(list, "frameaspectratio");
+    model.screen_window = screen_window(list);
+    read_lens(model.lens);
+    return model;
+  }
+  if (camera.type == "orthographic") {
+    OrthographicCamera model;
+    model.frame_aspect_ratio = given_float(list, "frameaspectratio");
+    model.screen_window = screen_window(list);
+    read_lens(model.lens);
+    return model;
+  }
+  if (camera.type == "spherical") {
+    SphericalCamera model;
+    const std::string mapping = list.get_string("mapping", "equalarea");
+    if (mapping != "equalarea" && mapping != "equirectangular") {
+      fail_at(list.location_of("mapping"),
+              "there is no mapping {}; known are equalarea, equirectangular", in_quotes(mapping));
+    }
+    model.mapping =
+        mapping == "equalarea" ? SphericalMapping::kEqualArea : SphericalMapping::kEquirectangular;
+    return model;
+  }
+  constexpr std::string_view kKnown[] = {"perspective", "orthographic", "spherical"};
+  fail_unknown(camera, "camera", kKnown);
+}
+
+}  // namespace
+
+PictureSettings build_picture(BuildContext& context, FilmSize& size) {
+  PictureSettings picture;
+  picture.color_space = name_of(context.pbrt.color_space);
+  for (const auto& option : context.pbrt.options.own()) {
+    std::string name;
+    for (const char c : option->name) {
+      if (c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    if (name == "seed") {
+      if (const auto* const values = std::get_if<std::vector<int>>(&option->values)) {
+        picture.seed = static_cast<uint64_t>(values->front());
+        continue;
+      }
+    }
+    context.diagnostics.warn(option->location,
+                             fmt::format("the option '{}' is left out", option->name));
+  }
+  read_film(context, size, picture);
+  read_sampler(context, picture);
+  read_integrator(context, picture);
+  return picture;
+}
+
+void build_camera(BuildContext& context, const FilmSize& size) {
+  context.scene.filter = make_filter(context);
+  if (!context.pbrt.camera) {
+    PbrtCamera standard;
+    context.scene.camera.emplace(PerspectiveCamera(), Matrix4d(), size.width, size.height);
+    return;
+  }
+  const PbrtCamera& camera = *context.pbrt.camera;
+  if (camera.camera_from_world.is_animated()) {
+    context.diagnostics.warn(camera.location,
+                             "a moving camera is not supported: it stands as at the start");
+  }
+  const CameraModel model = make_camera_model(camera);
+  pass_over(camera.parameters, {"shutteropen", "shutterclose"});
+  camera.parameters.report_unused(context.diagnostics);
+  context.scene.camera = at_location(camera.location, [&] {
+    return SceneCamera(model, camera.camera_from_world.start.inverse(), size.width, size.height);
+  });
+  context.scene.camera_medium = medium_of(context, camera.medium);
+}
+
+}  // namespace freepath

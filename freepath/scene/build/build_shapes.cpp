@@ -1,0 +1,172 @@
+#include "freepath/scene/build/build_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "freepath/base/error.h"
+#include "freepath/base/nearest_name.h"
+#include "freepath/render/surfaces/loop_subdivision.h"
+#include "freepath/render/surfaces/ply_file.h"
+#include "freepath/scene/build/build_lights.h"
+#include "freepath/scene/build/build_media.h"
+#include "freepath/scene/build/shape_emitter.h"
+
+namespace freepath {
+namespace {
+
+constexpr std::string_view kKinds[] = {"bilinearmesh", "cylinder", "disk",        "loopsubdiv",
+                                       "plymesh",      "sphere",   "trianglemesh"};
+
+std::vector<int> indices_of(const ParameterList& list, std::size_t positions, int corners) {
+  const std::span<const int> given = list.get_integers("indices");
+  if (!given.empty()) return {given.begin(), given.end()};
+  // One face needs no indices.
+  if (positions != static_cast<std::size_t>(corners)) {
+    fail_at(list.location(), "'indices' is missing: there are {} positions, and one face has {}",
+            positions, corners);
+  }
+  std::vector<int> indices(corners);
+  for (int i = 0; i < corners; ++i) indices[i] = i;
+  return indices;
+}
+
+template <class Mesh>
+Mesh read_mesh(const ParameterList& list, int corners) {
+  Mesh mesh;
+  mesh.positions = list.get_points("P");
+  for (const Vec3d& normal : list.get_normals("N")) mesh.normals.emplace_back(normal);
+  const std::vector<Vec2d> uvs = list.get_point2s("uv");
+  for (const Vec2d& uv : uvs) mesh.uvs.emplace_back(uv);
+  mesh.indices = indices_of(list, mesh.positions.size(), corners);
+  return mesh;
+}
+
+std::vector<ShapeGeometry> read_geometry(const BuildContext& context, const PbrtShape& shape) {
+  const ParameterList& list = shape.parameters;
+  if (shape.type == "sphere") {
+    const double radius = list.get_float("radius", 1);
+    return {Sphere{radius, list.get_float("zmin", -radius), list.get_float("zmax", radius),
+                   list.get_float("phimax", 360)}};
+  }
+  if (shape.type == "disk") {
+    return {Disk{list.get_float("height", 0), list.get_float("radius", 1),
+                 list.get_float("innerradius", 0), list.get_float("phimax", 360)}};
+  }
+  if (shape.type == "cylinder") {
+    return {Cylinder{list.get_float("radius", 1), list.get_float("zmin", -1),
+                     list.get_float("zmax", 1), list.get_float("phimax", 360)}};
+  }
+  if (shape.type == "trianglemesh") return {read_mesh<TriangleMesh>(list, 3)};
+  if (shape.type == "bilinearmesh") return {read_mesh<BilinearMesh>(list, 4)};
+  if (shape.type == "plymesh") {
+    const std::string file = file_of(context, list, "filename").string();
+    return at_location(list.location_of("filename"), [&] { return read_ply(file).shapes(); });
+  }
+  if (shape.type == "loopsubdiv") {
+    const std::vector<Vec3d> positions = list.get_points("P");
+    const std::vector<int> indices = indices_of(list, positions.size(), 3);
+    return {subdivide_loop(positions, indices, list.get_integer("levels", 3))};
+  }
+  const std::string_view nearest = nearest_name(shape.type, kKinds);
+  fail(
+      "there is no shape {}{}; known are bilinearmesh, cylinder, disk, loopsubdiv, plymesh, "
+      "sphere, trianglemesh",
+      in_quotes(shape.type), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest));
+}
+
+/// Builds shapes one after the other.
+class ShapeBuilder {
+ public:
+  explicit ShapeBuilder(BuildContext& context) : context_(context) {}
+
+  BuiltShapes build() {
+    built_.surfaces.groups.resize(context_.pbrt.objects.size());
+    for (const PbrtAreaLight& light : context_.pbrt.area_lights) {
+      built_.emissions.push_back(build_emission(context_, light));
+    }
+    for (const PbrtShape& shape : context_.pbrt.shapes) {
+      at_location(shape.location, [&] { add(shape); });
+      shape.parameters.report_unused(context_.diagnostics);
+    }
+    for (const PbrtInstance& instance : context_.pbrt.instances) {
+      if (instance.world_from_instance.is_animated()) {
+        context_.diagnostics.warn(instance.location, kMoves);
+      }
+      if (built_.surfaces.groups[instance.object].empty()) continue;
+      built_.surfaces.instances.push_back(
+          {static_cast<uint32_t>(instance.object), instance.world_from_instance.start});
+    }
+    return std::move(built_);
+  }
+
+ private:
+  static constexpr const char* kMoves =
+      "moving shapes are not supported: this one stands as at the start";
+
+  void add(const PbrtShape& shape) {
+    if (shape.world_from_object.is_animated()) context_.diagnostics.warn(shape.location, kMoves);
+    PathShape path_shape;
+    path_shape.material = context_.materials[shape.material];
+    path_shape.inside = medium_of(context_, shape.inside_medium);
+    path_shape.outside = medium_of(context_, shape.outside_medium);
+    read_alpha(shape);
+    const auto number = static_cast<uint32_t>(built_.shapes.size());
+    const bool boundary = !path_shape.material && !shape.area_light;
+    uint32_t first_primitive = 0;
+    for (ShapeGeometry& geometry : read_geometry(context_, shape)) {
+      SurfaceShape surface{std::move(geometry),
+                           shape.world_from_object.start,
+                           shape.reverse_orientation,
+                           boundary,
+                           number,
+                           first_primitive};
+      check(surface);
+      first_primitive += primitive_count(surface.geometry);
+      if (shape.object) {
+        if (shape.area_light) {
+          context_.diagnostics.warn(shape.location,
+                                    "shapes of objects are no lights: this one stays dark");
+        }
+        built_.surfaces.groups[*shape.object].push_back(std::move(surface));
+        continue;
+      }
+      if (shape.area_light) {
+        path_shape.light = static_cast<uint32_t>(built_.emitters.size());
+        built_.emitters.push_back(
+            {built_.surfaces.shapes.size(), static_cast<uint32_t>(*shape.area_light), number});
+      }
+      built_.surfaces.shapes.push_back(std::move(surface));
+    }
+    built_.shapes.push_back(path_shape);
+  }
+
+  void read_alpha(const PbrtShape& shape) {
+    const ParameterList& list = shape.parameters;
+    const auto type = list.type_of("alpha");
+    if (!type) return;
+    if (*type == ParameterType::kFloat && list.get_float("alpha", 1) == 1) return;
+    context_.diagnostics.warn(list.location_of("alpha"), "'alpha' is left out: the shape is whole");
+  }
+
+  BuildContext& context_;
+  BuiltShapes built_;
+};
+
+}  // namespace
+
+BuiltShapes build_shapes(BuildContext& context) { return ShapeBuilder(context).build(); }
+
+std::vector<AreaLight> build_area_lights(const BuiltShapes& shapes, const Vec3d& origin) {
+  std::vector<AreaLight> lights;
+  for (const BuiltShapes::Emitter& emitter : shapes.emitters) {
+    lights.push_back(
+        {std::make_shared<const ShapeEmitter>(shapes.surfaces.shapes[emitter.surface], origin),
+         emitter.emission, false, false});
+  }
+  return lights;
+}
+
+}  // namespace freepath

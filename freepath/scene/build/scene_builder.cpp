@@ -1,0 +1,78 @@
+#include "freepath/scene/build/scene_builder.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/scene/build/build_lights.h"
+#include "freepath/scene/build/build_materials.h"
+#include "freepath/scene/build/build_media.h"
+#include "freepath/scene/build/build_shapes.h"
+#include "freepath/scene/build/build_textures.h"
+#include "freepath/scene/build/region_simplifier.h"
+#include "freepath/scene/pbrt/parser.h"
+
+namespace freepath {
+namespace {
+
+/// All that has a place, and the camera.
+Box3d extent_of(const BuiltShapes& shapes, const SceneCamera& camera) {
+  Box3d extent;
+  if (!shapes.empty()) {
+    const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
+    if (!bounds.isEmpty()) extent = Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
+  }
+  const float x = 0.5F * static_cast<float>(camera.width());
+  const float y = 0.5F * static_cast<float>(camera.height());
+  extent.extendBy(camera.ray(x, y, 0.5F, 0.5F).origin);
+  return extent;
+}
+
+/// Near what is seen: the middle of the media that have bounds, else of everything.
+Vec3d origin_of(const PathScene& scene, const Box3d& extent) {
+  Box3d box;
+  for (const SceneMedium& medium : scene.media) {
+    if (medium.bounds().size().length() < 2 * extent.size().length()) {
+      box.extendBy(medium.bounds());
+    }
+  }
+  return (box.isEmpty() ? extent : box).center();
+}
+
+}  // namespace
+
+BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
+                       const BuildOptions& options) {
+  BuiltScene built;
+  PathScene& scene = built.scene;
+  scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space(name_of(pbrt.color_space)));
+  BuildContext context{pbrt, diagnostics, scene, {}, {}};
+  FilmSize size;
+  built.picture = build_picture(context, size);
+  scene.exposure_scale = built.picture.exposure_scale;
+  name_media(context);
+  build_camera(context, options.size.value_or(size));
+  build_textures(context);
+  build_materials(context);
+  BuiltShapes shapes = build_shapes(context);
+  const Box3d extent = extent_of(shapes, *scene.camera);
+  build_media(context, extent);
+  scene.origin = origin_of(scene, extent);
+  scene.shapes = shapes.shapes;
+  SceneLightsDescription lights;
+  lights.lights = build_lights(context);
+  lights.emissions = shapes.emissions;
+  lights.area_lights = build_area_lights(shapes, scene.origin);
+  lights.origin = scene.origin;
+  scene.lights.emplace(std::move(lights), *scene.spectra);
+  simplify_regions(std::move(shapes.surfaces), scene);
+  return built;
+}
+
+BuiltScene load_scene(const std::filesystem::path& file, Diagnostics& diagnostics,
+                      const BuildOptions& options) {
+  return build_scene(parse_pbrt_file(file, diagnostics), diagnostics, options);
+}
+
+}  // namespace freepath
