@@ -242,9 +242,7 @@ TriangleMesh Level::limit() const {
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     const int centre = static_cast<int>(i);
     ring(centre, around);
-    const Vec3d normal = on_limit.normal(centre, around);
-    const double length = normal.length();
-    mesh.normals.emplace_back(length > 0 ? normal / length : Vec3d(0));
+    mesh.normals.emplace_back(on_limit.normal(centre, around));
   }
   mesh.positions = std::move(on_limit.positions_);
   return mesh;
