@@ -180,16 +180,19 @@ Level Level::refine() const {
       positions[old_count + number] = edge_point(face, edge);
     }
     for (int corner = 0; corner < 3; ++corner) {
-      indices.insert(indices.end(),
-                     {vertex(face, corner), middle[corner], middle[previous_corner(corner)]});
+      // Each corner keeps its place, and with it the default texture coordinates.
+      std::array<int, 3> child{};
+      child[corner] = vertex(face, corner);
+      child[next_corner(corner)] = middle[corner];
+      child[previous_corner(corner)] = middle[previous_corner(corner)];
+      indices.insert(indices.end(), child.begin(), child.end());
     }
     indices.insert(indices.end(), {middle[0], middle[1], middle[2]});
   }
   return Level(std::move(positions), std::move(indices));
 }
 
-/// The cross product of two tangents. Reads limit positions nowhere but at the centre, where the
-/// weights of a boundary sum to 0 with it.
+/// The cross product of two tangents.
 Vec3d Level::normal(int centre, const std::vector<int>& around) const {
   constexpr double kPi = std::numbers::pi;
   const std::size_t n = around.size();
@@ -239,9 +242,7 @@ TriangleMesh Level::limit() const {
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     const int centre = static_cast<int>(i);
     ring(centre, around);
-    const Vec3d normal = on_limit.normal(centre, around);
-    const double length = normal.length();
-    mesh.normals.emplace_back(length > 0 ? normal / length : Vec3d(0));
+    mesh.normals.emplace_back(on_limit.normal(centre, around));
   }
   mesh.positions = std::move(on_limit.positions_);
   return mesh;

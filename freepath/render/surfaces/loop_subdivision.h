@@ -10,8 +10,8 @@ namespace freepath {
 
 /// Refines a mesh of triangles by Loop's rules [Loop87], with the weights of pbrt-v4 (3/16 at
 /// vertices of three edges, 3/(8n) at others), moves the vertices to the limit surface and gives
-/// them its normals. Edges of one triangle are the boundary, which becomes a cubic B-spline of its
-/// vertices alone.
+/// them its normals, the longer the larger the triangles around. Edges of one triangle are the
+/// boundary, which becomes a cubic B-spline of its vertices alone.
 ///
 /// As in pbrt-v4 the normals, and with them the outside, are on the side that sees the triangles
 /// clockwise: the other one than that of the mesh itself.

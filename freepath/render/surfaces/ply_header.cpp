@@ -1,5 +1,6 @@
 #include "freepath/render/surfaces/ply_header.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
@@ -45,7 +46,7 @@ class HeaderParser {
       : content_(content), name_(name) {}
 
   PlyHeader parse() {
-    if (next_line() != "ply") {
+    if (!content_.starts_with("ply") || next_line() != "ply") {
       fail(
           "{}: this is no PLY file: it does not begin with 'ply'. Is it compressed? Then unpack it",
           name_);

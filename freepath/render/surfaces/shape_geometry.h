@@ -30,7 +30,7 @@ using Vec2f = Imath::V2f;
 /// Triangles. Without uvs the corners of each have (0,0), (1,0), (1,1).
 struct TriangleMesh {
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> normals;  ///< One for each position, or none; of any length.
+  std::vector<Vec3f> normals;  ///< One for each position, or none; a longer one counts for more.
   std::vector<Vec2f> uvs;      ///< One for each position, or none.
   std::vector<int> indices;    ///< Three for each triangle.
 };
@@ -38,7 +38,7 @@ struct TriangleMesh {
 /// Bilinear patches. The corners of each are at (u, v) = (0,0), (1,0), (0,1), (1,1), in this order.
 struct BilinearMesh {
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> normals;  ///< One for each position, or none; of any length.
+  std::vector<Vec3f> normals;  ///< One for each position, or none; a longer one counts for more.
   std::vector<Vec2f> uvs;      ///< One for each position, or none: those of the patch then.
   std::vector<int> indices;    ///< Four for each patch.
 };

@@ -32,7 +32,8 @@ TracedVertices trace_vertices(const SurfaceShape& shape, const Mesh& mesh, const
   const float sign = shape.reverse_orientation ? -1.0F : 1.0F;
   traced.normals.reserve(mesh.normals.size());
   for (const Vec3f& n : mesh.normals) {
-    traced.normals.push_back(Vec3f(inverse.normal_back(Vec3d(n)).normalized()) * sign);
+    // Not normalised: as in pbrt, longer ones count for more where they are interpolated.
+    traced.normals.push_back(Vec3f(inverse.normal_back(Vec3d(n))) * sign);
   }
   traced.uvs = mesh.uvs;
   traced.indices.assign(mesh.indices.begin(), mesh.indices.end());

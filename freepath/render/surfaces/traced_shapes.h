@@ -41,7 +41,7 @@ struct TracedShape {
 struct TracedVertices : TracedShape {
   /// One more than there are: what traces them reads four floats at each.
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;  ///< To the outside, unit.
+  std::vector<Vec3f> normals;  ///< To the outside, of any length.
   std::vector<Vec2f> uvs;
   std::vector<uint32_t> indices;
 
