@@ -201,6 +201,11 @@ TEST(Photometry, IlluminanceIsThatOfASurface) {
                                         .light_to_world = frame},
                      Vec3f(up)),
               12, 0.05);
+  EXPECT_NEAR(around(ImageInfiniteLight{.image = testing::rough_image(32, 16),
+                                        .mapping = SphereMapping::kLatLong,
+                                        .illuminance = 12.0},
+                     {0, 1, 0}),
+              12, 0.05);
 }
 
 TEST(PunctualLights, AreOrientedAsPbrtDoes) {
