@@ -20,7 +20,10 @@ Vec3f colour_of(const Spectrum& s) { return {s.x, s.y, s.z}; }
 /// Illuminance of a surface whose normal is `up`, by the midpoint rule on the octahedral map.
 template <class Environment>
 double illuminance_of(const Environment& environment, const Vec3f& up, const Vec3d& weights,
-                      int size) {
+                      int image_size) {
+  // Some points for each pixel, even if there are few.
+  constexpr int kLeast = 512;
+  const int size = image_size * std::max(1, kLeast / image_size);
   double sum = 0;
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) {
@@ -35,9 +38,9 @@ double illuminance_of(const Environment& environment, const Vec3f& up, const Vec
   return 4 * kPi * sum / (static_cast<double>(size) * size);
 }
 
-/// The image with negative values taken as 0.
-void clamp_negative(Image* image) {
-  for (float& value : image->values) value = value < 0 ? 0 : value;
+Image without_negative(Image image) {
+  for (float& value : image.values) value = value < 0 ? 0 : value;
+  return image;
 }
 
 }  // namespace
@@ -65,16 +68,16 @@ void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin,
   Radiance radiance;
   double fluence = 0;
   double illuminance = 0;
+  const int size = light.image.pixels.width;
   if (light.mapping == SphereMapping::kOctahedral) {
     OctahedralEnvironment image(light.image.pixels, Vec3f(weights), name);
     fluence = image.fluence();
-    if (light.illuminance) illuminance = illuminance_of(image, {0, 0, 1}, weights, image.size());
+    if (light.illuminance) illuminance = illuminance_of(image, {0, 0, 1}, weights, size);
     radiance = std::move(image);
   } else {
-    clamp_negative(&light.image.pixels);
-    ImageEnvironment image(light.image.pixels, UpAxis::kY, name);
+    ImageEnvironment image(without_negative(std::move(light.image.pixels)), UpAxis::kY, name);
     fluence = weights.dot(Vec3d(colour_of(image.fluence())));
-    if (light.illuminance) illuminance = illuminance_of(image, {0, 1, 0}, weights, image.width());
+    if (light.illuminance) illuminance = illuminance_of(image, {0, 1, 0}, weights, size);
     radiance = std::move(image);
   }
   const double factor = light_factor(light.scale, light.illuminance, illuminance, name);
@@ -88,8 +91,7 @@ void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin,
           octahedral ? octahedral->evaluate(d).radiance
                      : std::get_if<ImageEnvironment>(&result.radiance)->evaluate(d).radiance)));
     };
-    result.portal.emplace(*light.portal, origin, brightness, portal_cells(light.image.pixels.width),
-                          light.name);
+    result.portal.emplace(*light.portal, origin, brightness, portal_cells(size), light.name);
   }
   result.importance = fluence * factor;
   lights_.push_back(std::move(result));
@@ -196,10 +198,12 @@ LightDraw InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values
   }
   if (lights_.empty()) return draw;
   const Light& light = lights_[chosen];
-  if (!light.portal) {
+  if (light.portal) {
+    const std::optional<Vec3f> direction = light.portal->sample(from, u0, u1);
+    if (!direction) return draw;
+    draw.direction = *direction;
+  } else {
     draw.direction = sample_world(light, u0, u1);
-  } else if (!light.portal->sample(from, u0, u1, &draw.direction)) {
-    return draw;
   }
   const LightSeen seen = evaluate(from, draw.direction, values);
   draw.radiance = seen.radiance;

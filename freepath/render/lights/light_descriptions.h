@@ -36,7 +36,7 @@ using PortalCorners = std::array<Vec3d, 4>;
 /// The same radiance from everywhere.
 struct ConstantInfiniteLight {
   std::string name = "infinite light";
-  SpectrumId radiance;
+  SpectrumId radiance = {};
   double scale = 1;
   /// Of a surface under one hemisphere of it; in place of what the radiance gives.
   std::optional<double> illuminance = {};
@@ -52,12 +52,12 @@ enum class SphereMapping {
 /// An image around the scene.
 struct ImageInfiniteLight {
   std::string name = "infinite light";
-  LightImage image;
+  LightImage image = {};
   SphereMapping mapping = SphereMapping::kOctahedral;
   double scale = 1;
   /// Of a surface whose normal is the light's z, which is up; in place of what the image gives.
   std::optional<double> illuminance = {};
-  Matrix4d light_to_world;
+  Matrix4d light_to_world = {};
   std::optional<PortalCorners> portal = {};
 };
 
@@ -78,53 +78,53 @@ struct SunLight {
 /// Parallel light.
 struct DistantLight {
   std::string name = "distant light";
-  SpectrumId radiance;  ///< Times scale: the irradiance of a surface that faces the light.
+  SpectrumId radiance = {};  ///< Times scale: the irradiance of a surface that faces the light.
   double scale = 1;
   std::optional<double> illuminance = {};  ///< In its place.
   Vec3d from{0, 0, 0}, to{0, 0, 1};        ///< The light travels from here to there.
-  Matrix4d light_to_world;
+  Matrix4d light_to_world = {};
 };
 
 /// The same intensity in all directions.
 struct PointLight {
   std::string name = "point light";
-  SpectrumId intensity;
+  SpectrumId intensity = {};
   double scale = 1;
   std::optional<double> power = {};  ///< Over all directions, in place of what the intensity gives.
   Vec3d from{0, 0, 0};
-  Matrix4d light_to_world;
+  Matrix4d light_to_world = {};
 };
 
 /// A cone of light with a soft edge.
 struct SpotLight {
   std::string name = "spot light";
-  SpectrumId intensity;  ///< On its axis.
+  SpectrumId intensity = {};  ///< On its axis.
   double scale = 1;
   std::optional<double> power = {};
   Vec3d from{0, 0, 0}, to{0, 0, 1};
   double cone_angle = 30;       ///< Half the opening, where there is no light any more [degrees].
   double cone_delta_angle = 5;  ///< Width of the edge [degrees].
-  Matrix4d light_to_world;
+  Matrix4d light_to_world = {};
 };
 
 /// A point with an image of its intensity in all directions.
 struct GoniometricLight {
   std::string name = "goniometric light";
-  SpectrumId intensity;                  ///< Where the image is 1.
+  SpectrumId intensity = {};             ///< Where the image is 1.
   std::optional<LightImage> image = {};  ///< Octahedral, its y the z of the map; 1 without it.
   double scale = 1;
   std::optional<double> power = {};
-  Matrix4d light_to_world;
+  Matrix4d light_to_world = {};
 };
 
 /// A projector of slides at a point; the light's z is the direction, y is up.
 struct ProjectionLight {
   std::string name = "projection light";
-  LightImage image;  ///< Of the intensity.
-  double fov = 90;   ///< Of the shorter side of the image [degrees].
+  LightImage image = {};  ///< Of the intensity.
+  double fov = 90;        ///< Of the shorter side of the image [degrees].
   double scale = 1;
   std::optional<double> power = {};
-  Matrix4d light_to_world;
+  Matrix4d light_to_world = {};
 };
 
 using LightDescription =
@@ -134,7 +134,7 @@ using LightDescription =
 /// The emission of surfaces: the same radiance in all directions.
 struct AreaEmission {
   std::string name = "area light";
-  SpectrumId radiance;
+  SpectrumId radiance = {};
   /// Of the radiance, in place of the spectrum; (u, v) = (0, 0) is its lower left corner.
   std::optional<LightImage> image = {};
   double scale = 1;

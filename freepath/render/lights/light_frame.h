@@ -1,6 +1,7 @@
 #pragma once
 /// @file The coordinates of a light.
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -40,6 +41,16 @@ class LightFrame {
   Vec3f to_world(const Vec3f& v) const {
     return {to_world_[0].dot(v), to_world_[1].dot(v), to_world_[2].dot(v)};
   }
+  /// Whether angles are the same in both.
+  bool keeps_angles() const {
+    constexpr float kTolerance = 1e-3F;
+    const float scale2 = to_light_[0].length2();
+    return std::abs(to_light_[1].length2() - scale2) <= kTolerance * scale2 &&
+           std::abs(to_light_[2].length2() - scale2) <= kTolerance * scale2 &&
+           std::abs(to_light_[0].dot(to_light_[1])) <= kTolerance * scale2 &&
+           std::abs(to_light_[1].dot(to_light_[2])) <= kTolerance * scale2 &&
+           std::abs(to_light_[2].dot(to_light_[0])) <= kTolerance * scale2;
+  }
   /// Solid angle in the light for one in the world: the density of a direction is to be multiplied
   /// by it. 1 without shears and uneven scales.
   /// @param length of to_light of the unit direction in the world
@@ -48,8 +59,8 @@ class LightFrame {
   }
 
  private:
-  Vec3f to_world_[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  Vec3f to_light_[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::array<Vec3f, 3> to_world_{Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)};
+  std::array<Vec3f, 3> to_light_{Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)};
   float inverse_determinant_ = 1;
 };
 

@@ -85,14 +85,15 @@ int Portal::cell_of(double coordinate) const {
   return std::clamp(static_cast<int>(coordinate), 0, cells_ - 1);
 }
 
-bool Portal::find_window(const Vec3f& from, Window* window) const {
+std::optional<Portal::Window> Portal::window_from(const Vec3f& from) const {
   const Vec3f first = to_local(first_ - from);
   const Vec3f opposite = to_local(opposite_ - from);
   const float ahead = 0.5F * (first.z + opposite.z);
-  if (!(ahead > 0)) return false;
-  *window = {angle_in_cells(first.x, ahead), angle_in_cells(first.y, ahead),
-             angle_in_cells(opposite.x, ahead), angle_in_cells(opposite.y, ahead)};
-  return window->u0 < window->u1 && window->v0 < window->v1;
+  if (!(ahead > 0)) return {};
+  const Window window{angle_in_cells(first.x, ahead), angle_in_cells(first.y, ahead),
+                      angle_in_cells(opposite.x, ahead), angle_in_cells(opposite.y, ahead)};
+  if (!(window.u0 < window.u1 && window.v0 < window.v1)) return {};
+  return window;
 }
 
 double Portal::integral(double u, double v) const {
@@ -109,8 +110,10 @@ double Portal::integral(double u, double v) const {
 
 float Portal::pdf(const Vec3f& from, const Vec3f& direction) const {
   const Vec3f d = to_local(direction);
-  Window window;
-  if (!(d.z > 0) || !find_window(from, &window)) return 0;
+  if (!(d.z > 0)) return 0;
+  const std::optional<Window> seen = window_from(from);
+  if (!seen) return 0;
+  const Window& window = *seen;
   const double u = angle_in_cells(d.x, d.z);
   const double v = angle_in_cells(d.y, d.z);
   if (u < window.u0 || u > window.u1 || v < window.v0 || v > window.v1) return 0;
@@ -124,9 +127,10 @@ float Portal::pdf(const Vec3f& from, const Vec3f& direction) const {
                    : 0;
 }
 
-bool Portal::sample(const Vec3f& from, float u0, float u1, Vec3f* direction) const {
-  Window window;
-  if (!find_window(from, &window)) return false;
+std::optional<Vec3f> Portal::sample(const Vec3f& from, float u0, float u1) const {
+  const std::optional<Window> seen = window_from(from);
+  if (!seen) return {};
+  const Window& window = *seen;
   const double total = integral(window);
   const double u = reach(
       [&](double to) {
@@ -145,8 +149,7 @@ bool Portal::sample(const Vec3f& from, float u0, float u1, Vec3f* direction) con
   const Vec3d local =
       Vec3d(std::sin(a) * std::cos(b), std::cos(a) * std::sin(b), std::cos(a) * std::cos(b))
           .normalized();
-  *direction = Vec3f(Vec3d(x_) * local.x + Vec3d(y_) * local.y + Vec3d(z_) * local.z);
-  return true;
+  return Vec3f(Vec3d(x_) * local.x + Vec3d(y_) * local.y + Vec3d(z_) * local.z);
 }
 
 }  // namespace freepath

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ class Portal {
   /// Density of `sample` [1/sr]; 0 for a direction that passes beside the portal.
   float pdf(const Vec3f& from, const Vec3f& direction) const;
 
-  /// A direction through the portal. False where there is none: on the portal's outer side.
-  bool sample(const Vec3f& from, float u0, float u1, Vec3f* direction) const;
+  /// A direction through the portal; none on its outer side.
+  std::optional<Vec3f> sample(const Vec3f& from, float u0, float u1) const;
 
  private:
   /// The part of the sky that is seen, in cells.
@@ -40,7 +41,7 @@ class Portal {
 
   Vec3f to_local(const Vec3f& v) const { return {x_.dot(v), y_.dot(v), z_.dot(v)}; }
   double angle_in_cells(float across, float ahead) const;
-  bool find_window(const Vec3f& from, Window* window) const;
+  std::optional<Window> window_from(const Vec3f& from) const;
   /// Integral of the grid over the rectangle from the origin.
   double integral(double u, double v) const;
   double integral(const Window& w) const {

@@ -1,5 +1,8 @@
 #include "freepath/render/lights/punctual_light.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -77,13 +80,9 @@ PunctualLight::PunctualLight(const SpotLight& light, const Vec3d& origin,
   const double flux = 2 * kPi * (1 - 0.5 * (static_cast<double>(cosine_start_) + cosine_end_));
   set_spectrum(light.intensity, light.scale, light.power, flux, table, light.name);
   bounds_.normals.axis = frame_.to_world({0, 0, 1}).normalized();
-  // No narrower than the cone: uneven scales bend it, and there nothing is excluded.
-  bounds_.normals.cosine = -1;
-  const float length = frame_.to_light(bounds_.normals.axis).length();
-  if (std::abs(frame_.light_solid_angle(length) - 1) < 1e-3F) bounds_.normals.cosine = 1;
-  bounds_.cosine_reach = std::max(-1.0F, cosine_end_ - 1e-3F);
-  // Beyond a right angle the cosine of the importance would be negative.
-  if (bounds_.cosine_reach < 0) bounds_.normals.cosine = -1;
+  bounds_.cosine_reach = cosine_end_ - 1e-3F;
+  // A cone that is bent by uneven scales or wider than a half is bounded by all directions.
+  bounds_.normals.cosine = frame_.keeps_angles() && bounds_.cosine_reach > 0 ? 1 : -1;
 }
 
 PunctualLight::PunctualLight(const GoniometricLight& light, const Vec3d& origin,

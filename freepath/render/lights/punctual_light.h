@@ -1,8 +1,8 @@
 #pragma once
 /// @file Lights at a point.
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "freepath/base/channels.h"

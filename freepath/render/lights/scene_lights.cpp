@@ -121,6 +121,7 @@ std::vector<LightBounds> SceneLights::add_area_lights(const SceneLightsDescripti
     if (light.emission >= emissions_.size()) {
       fail("area light {}: there is no emission {}", areas_.size(), light.emission);
     }
+    if (!light.geometry) fail("area light {}: it has no geometry", areas_.size());
     const AreaEmission& emission = description.emissions[light.emission];
     const SpectralDistribution& spectrum = table.spectrum(emission.radiance);
     const bool has_image = emission.image.has_value();
