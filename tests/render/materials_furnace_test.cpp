@@ -101,7 +101,7 @@ TEST(Furnace, CoatedWhiteLosesNothing) {
   const Coating thin{world.index(1.5), {}, 1e-7F, SpectrumId{}, 0.0F, 10'000, 1};
   Coating milk = thin;
   milk.albedo = white;
-  milk.thickness = 1;
+  milk.thickness = 1.0F;
   milk.g = 0.5F;
   const Material clear = CoatedDiffuseMaterial{thin, white};
   const Material milky = CoatedDiffuseMaterial{milk, white};

@@ -103,7 +103,7 @@ MaterialValue CoatedConductorMaterial::evaluate(const Vec3f& out, const Vec3f& i
       context);
 }
 
-/// The first reflection of the conductor, as a smooth coating lets it through.
+/// All reflections between a smooth coating and a smooth conductor.
 Channels CoatedConductorMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
                                          const SurfaceContext& context) const {
   const float eta = dielectric_index(coating.eta, context).hero;
@@ -111,7 +111,12 @@ Channels CoatedConductorMaterial::albedo(const Vec3f& out, const SurfacePoint& p
   const float first = fresnel_dielectric(cosine, eta);
   const float below = std::sqrt(std::max(0.0F, 1.0F - (1.0F - cosine * cosine) / (eta * eta)));
   const Channels metal = conductor_at(index, roughness, eta, point, context).reflectance(below);
-  return Channels(first) + metal * ((1.0F - first) * (1.0F - first));
+  Channels result;
+  for (int i = 0; i < kMaxChannels; ++i) {
+    result[i] = first + (1.0F - first) * (1.0F - first) * metal[i] /
+                            std::max(1e-6F, 1.0F - first * metal[i]);
+  }
+  return result;
 }
 
 }  // namespace freepath

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <optional>
 
 #include "freepath/base/vector.h"
@@ -28,12 +27,20 @@ inline float fresnel_dielectric(float cosine, float eta) {
 /// reflects all.
 inline float fresnel_conductor(float cosine, float eta, float k) {
   if (eta == 0.0F && k == 0.0F) return 1.0F;
-  const std::complex<double> index(eta, k);
-  const double c = std::clamp(cosine, 0.0F, 1.0F);
-  const std::complex<double> cosine_t = std::sqrt(1.0 - (1.0 - c * c) / (index * index));
-  const double parallel = std::norm(index * c - cosine_t) / std::norm(index * c + cosine_t);
-  const double perpendicular = std::norm(c - index * cosine_t) / std::norm(c + index * cosine_t);
-  return static_cast<float>(0.5 * (parallel + perpendicular));
+  // (a + i b)² = (eta + i k)² - sin² is the square of the index times the refracted cosine. In
+  // double, since for large k the shares come very near 1.
+  const double c = std::clamp(cosine, 1e-6F, 1.0F);
+  const double sine2 = 1.0 - c * c;
+  const double real = static_cast<double>(eta) * eta - static_cast<double>(k) * k - sine2;
+  const double half_imaginary = static_cast<double>(eta) * k;
+  const double modulus = std::sqrt(real * real + 4.0 * half_imaginary * half_imaginary);
+  // The larger of a and b by the root, so that nothing cancels in the other.
+  const double larger = std::sqrt(0.5 * (modulus + std::abs(real)));
+  const double a = real >= 0 ? larger : half_imaginary / larger;
+  const double perpendicular = (modulus + c * c - 2.0 * a * c) / (modulus + c * c + 2.0 * a * c);
+  const double sum = c * c * modulus + sine2 * sine2;
+  const double ratio = (sum - 2.0 * a * c * sine2) / (sum + 2.0 * a * c * sine2);
+  return static_cast<float>(0.5 * perpendicular * (1.0 + ratio));
 }
 
 /// Mirrors a direction about a normal; both point away from the surface.

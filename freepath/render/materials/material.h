@@ -48,8 +48,7 @@ class Material {
   Material(Kind kind) : kind_(std::move(kind)) { check(); }
   /// Of one of the kinds.
   template <class T>
-    requires std::is_constructible_v<Kind, T>
-  Material(T kind) : Material(Kind(std::move(kind))) {}
+  requires std::is_constructible_v<Kind, T> Material(T kind) : Material(Kind(std::move(kind))) {}
 
   /// Draws where a path goes on; nothing if it ends.
   /// @param travel direction of travel before, unit [world]

@@ -1,0 +1,197 @@
+// Textures give the values that their definitions say.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/io/image.h"
+#include "freepath/render/textures/texture_table.h"
+#include "freepath/spectra/rgb_color_space.h"
+
+namespace freepath::testing {
+namespace {
+
+SurfacePoint at(float u, float v) {
+  SurfacePoint point;
+  point.u = u;
+  point.v = v;
+  return point;
+}
+
+/// 2x2, grey: 1 2 in the upper row, 3 4 in the lower.
+std::shared_ptr<const TextureImage> four_greys() {
+  return std::make_shared<TextureImage>(2, 2, 1, std::vector<float>{1, 2, 3, 4});
+}
+
+float looked_up(const ImageMapTexture& texture, float u, float v) {
+  TextureTable table;
+  return table.evaluate_float(table.add(FloatTexture(texture)), at(u, v));
+}
+
+TEST(ImageMap, PixelCentresAreExactAndTheTopRowHasTheLargestV) {
+  const ImageMapTexture texture{four_greys(), {}};
+  EXPECT_EQ(looked_up(texture, 0.25F, 0.75F), 1);
+  EXPECT_EQ(looked_up(texture, 0.75F, 0.75F), 2);
+  EXPECT_EQ(looked_up(texture, 0.25F, 0.25F), 3);
+  EXPECT_EQ(looked_up(texture, 0.75F, 0.25F), 4);
+}
+
+TEST(ImageMap, IsBilinearBetweenThem) {
+  const ImageMapTexture texture{four_greys(), {}};
+  EXPECT_EQ(looked_up(texture, 0.5F, 0.75F), 1.5F);
+  EXPECT_EQ(looked_up(texture, 0.25F, 0.5F), 2);
+  EXPECT_EQ(looked_up(texture, 0.375F, 0.625F),
+            0.75F * 0.75F * 1 + 0.75F * 0.25F * (2 + 3) + 0.0625F * 4);
+}
+
+TEST(ImageMap, WrapsAtItsEdges) {
+  ImageMapTexture texture{four_greys(), {}};
+  EXPECT_EQ(looked_up(texture, 1.25F, -0.25F), 1);  // one period on
+  EXPECT_EQ(looked_up(texture, 0, 0.75F), 1.5F);    // half of either column
+  texture.wrap = ImageWrap::kClamp;
+  EXPECT_EQ(looked_up(texture, 0, 0.75F), 1);
+  EXPECT_EQ(looked_up(texture, 7, 0.25F), 4);
+  texture.wrap = ImageWrap::kBlack;
+  EXPECT_EQ(looked_up(texture, 0, 0.75F), 0.5F);
+  EXPECT_EQ(looked_up(texture, -3, 0.75F), 0);
+}
+
+TEST(ImageMap, MapsScalesAndInverts) {
+  ImageMapTexture texture{four_greys(), {2, 3, 0.25F, -0.25F}};
+  EXPECT_EQ(looked_up(texture, 0.25F, 1 / 3.0F), 2);  // s = 0.75, t = 0.75
+  texture.mapping = {};
+  texture.scale = 0.125F;
+  EXPECT_EQ(looked_up(texture, 0.75F, 0.25F), 0.5F);
+  texture.invert = true;
+  EXPECT_EQ(looked_up(texture, 0.25F, 0.75F), 0.875F);
+  texture.scale = 1;
+  EXPECT_EQ(looked_up(texture, 0.75F, 0.25F), 0);
+}
+
+TEST(ImageMap, OfNoPlaceIsACorner) {
+  const float infinite = std::numeric_limits<float>::infinity();
+  const ImageMapTexture texture{four_greys(), {}};
+  EXPECT_GE(looked_up(texture, infinite, std::nanf("")), 1);
+}
+
+TEST(ImageMap, OfColoursIsTheirMeanOrTheirAlphaAsANumber) {
+  const auto rgb = std::make_shared<TextureImage>(1, 1, 3, std::vector<float>{0.1F, 0.2F, 0.6F});
+  EXPECT_NEAR(looked_up({rgb, {}}, 0, 0), 0.3, 1e-6);
+  const auto rgba =
+      std::make_shared<TextureImage>(1, 1, 4, std::vector<float>{0.1F, 0.2F, 0.6F, 0.75F});
+  EXPECT_EQ(looked_up({rgba, {}}, 0, 0), 0.75F);
+}
+
+TEST(ImageMap, OfColoursIsAReflectance) {
+  SpectrumTable spectra(rgb_color_space("srgb"));
+  const SpectrumValues rgb = spectra.in_rgb();
+  TextureTable table;
+  const auto image = std::make_shared<TextureImage>(1, 1, 3, std::vector<float>{0.1F, 0.2F, 0.6F});
+  const SpectrumTextureId id = table.add(SpectrumTexture(ImageMapTexture{image, {}}));
+  const Channels found = table.evaluate_spectrum(id, at(0, 0), rgb);
+  const Channels expected = rgb.reflectance({0.1F, 0.2F, 0.6F});
+  for (int i = 0; i < kMaxChannels; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6);
+}
+
+TEST(Checkerboard, ChangesAtEveryWhole) {
+  TextureTable table;
+  const FloatTextureId board =
+      table.add(FloatTexture(CheckerboardTexture<FloatInput>{1.0F, 2.0F, {4, 2}}));
+  EXPECT_EQ(table.evaluate_float(board, at(0.1F, 0.1F)), 1);
+  EXPECT_EQ(table.evaluate_float(board, at(0.26F, 0.1F)), 2);
+  EXPECT_EQ(table.evaluate_float(board, at(0.1F, 0.6F)), 2);
+  EXPECT_EQ(table.evaluate_float(board, at(0.26F, 0.6F)), 1);
+  EXPECT_EQ(table.evaluate_float(board, at(-0.1F, 0.1F)), 2);
+  EXPECT_EQ(table.evaluate_float(board, at(-0.1F, -0.1F)), 1);
+}
+
+TEST(Textures, ScaleAndMixTakeTextures) {
+  SpectrumTable spectra(rgb_color_space("srgb"));
+  const SpectrumId half = spectra.add(0.5, SpectrumRole::kReflectance);
+  const SpectrumId full = spectra.add(1.0, SpectrumRole::kReflectance);
+  const SpectrumValues rgb = spectra.in_rgb();
+  TextureTable table;
+  const FloatTextureId quarter = table.add(FloatTexture(0.25F));
+  const FloatTextureId scaled = table.add(FloatTexture(ScaleTexture<FloatInput>{quarter, 2.0F}));
+  EXPECT_EQ(table.evaluate_float(scaled, at(0, 0)), 0.5F);
+  const FloatTextureId mixed = table.add(FloatTexture(MixTexture<FloatInput>{1.0F, 2.0F, quarter}));
+  EXPECT_EQ(table.evaluate_float(mixed, at(0, 0)), 1.25F);
+  const SpectrumTextureId dim =
+      table.add(SpectrumTexture(ScaleTexture<SpectrumInput>{half, quarter}));
+  EXPECT_NEAR(table.evaluate_spectrum(dim, at(0, 0), rgb)[1], 0.125, 1e-6);
+  const SpectrumTextureId between =
+      table.add(SpectrumTexture(MixTexture<SpectrumInput>{dim, full, 0.5F}));
+  EXPECT_NEAR(table.evaluate_spectrum(between, at(0, 0), rgb)[1], 0.5625, 1e-6);
+  EXPECT_NEAR(table.evaluate(SpectrumInput(full), at(0, 0), rgb)[1], 1, 1e-6);
+}
+
+TEST(Textures, RefuseWhatCannotBe) {
+  TextureTable table;
+  EXPECT_THROW(table.add(FloatTexture(ImageMapTexture{})), Error);
+  EXPECT_THROW(table.add(FloatTexture(ScaleTexture<FloatInput>{FloatTextureId{0}, 1.0F})), Error);
+  EXPECT_THROW(
+      table.add(SpectrumTexture(MixTexture<SpectrumInput>{SpectrumTextureId{3}, SpectrumId{}})),
+      Error);
+  EXPECT_THROW(TextureImage(2, 2, 1, {1, 2, 3}), Error);
+  EXPECT_THROW(TextureImage(1, 1, 2, {1, 2}), Error);
+  EXPECT_THROW(image_wrap("octahedralsphere"), Error);
+  EXPECT_THROW(image_encoding("gamma"), Error);
+  EXPECT_THROW(image_encoding("gamma 0"), Error);
+  EXPECT_THROW(image_encoding("gamma 2.2x"), Error);
+  EXPECT_THROW(read_texture_image("/nowhere/none.png"), Error);
+}
+
+TEST(Textures, NamesAreKnown) {
+  EXPECT_EQ(image_wrap("clamp"), ImageWrap::kClamp);
+  EXPECT_EQ(image_encoding("linear").kind, ImageEncoding::Kind::kLinear);
+  EXPECT_EQ(image_encoding("gamma 2.2").gamma, 2.2F);
+  EXPECT_TRUE(holds_encoded_integers("a.b/wood.PNG"));
+  EXPECT_FALSE(holds_encoded_integers("wood.exr"));
+}
+
+/// A file that goes when the test does.
+struct TemporaryFile {
+  explicit TemporaryFile(const std::string& extension)
+      : path((std::filesystem::temp_directory_path() /
+              ("freepath_textures_" +
+               std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
+               extension))
+                 .string()) {}
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  std::string path;
+};
+
+TEST(ReadTextureImage, DecodesIntegersAsAsked) {
+  const TemporaryFile file(".png");
+  // 188 of 255 is the sRGB value of 0.5029.
+  const float linear = linear_from_srgb(188 / 255.0F);
+  write_png(file.path, {1, 1, {"R", "G", "B"}, {linear, 0, 1}});
+  const auto pixel = [&](const char* encoding) {
+    return read_texture_image(file.path, image_encoding(encoding))
+        ->color(0.5F, 0.5F, ImageWrap::kClamp)
+        .x;
+  };
+  EXPECT_NEAR(pixel("sRGB"), 0.5029, 1e-4);
+  EXPECT_NEAR(pixel("linear"), 188 / 255.0, 1e-6);
+  EXPECT_NEAR(pixel("gamma 2"), std::pow(188 / 255.0, 2), 1e-6);
+}
+
+TEST(ReadTextureImage, LeavesFloatsAsTheyAreAndOpaqueAlphaOut) {
+  const TemporaryFile file(".exr");
+  write_exr(file.path, {1, 1, {"R", "G", "B", "A"}, {2, 3, 4, 1}});
+  const auto image = read_texture_image(file.path, image_encoding("gamma 2"));
+  EXPECT_EQ(image->channels(), 3);
+  EXPECT_EQ(image->color(0.5F, 0.5F, ImageWrap::kClamp), Vec3f(2, 3, 4));
+  write_exr(file.path, {1, 1, {"R", "G", "B", "A"}, {0.5F, 0.5F, 0.5F, 0.5F}});
+  EXPECT_EQ(read_texture_image(file.path)->channels(), 4);
+  write_exr(file.path, {1, 1, {"Y"}, {0.25F}});
+  EXPECT_EQ(read_texture_image(file.path)->channels(), 1);
+}
+
+}  // namespace
+}  // namespace freepath::testing
