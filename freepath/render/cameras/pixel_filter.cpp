@@ -20,8 +20,7 @@ double shape(const TriangleFilter& /*filter*/, double x, double radius) { return
 double detail(const TriangleFilter& /*filter*/, double radius) { return radius; }
 
 double shape(const GaussianFilter& filter, double x, double radius) {
-  // exp(-x²/2σ²) - exp(-radius²/2σ²) over the second of them, or over 1 where that underflows: a
-  // wide Gaussian would lose its digits in the difference.
+  // exp(-here) - exp(-edge), without the cancellation that a wide Gaussian would suffer.
   const double inverse = 0.5 / (filter.sigma * filter.sigma);
   const double edge = radius * radius * inverse;
   const double here = x * x * inverse;
@@ -149,7 +148,7 @@ PixelFilter::Place PixelFilter::Axis::sample(float u) const {
   const double d1 = density[step + 1];
   const double root = std::sqrt(d0 * d0 + share * (d1 * d1 - d0 * d0));
   const double t = share > 0 ? share * (d0 + d1) / (d0 + root) : 0;
-  const double steps = static_cast<double>(cdf.size() - 1);
+  const auto steps = static_cast<double>(cdf.size() - 1);
   const double distance = std::min((static_cast<double>(step) + t) * (radius / steps), radius);
   const double used = d0 + t * (d1 - d0);
   const double weight = used > 0 ? scale * shape_of(model, distance, radius) / used : 0;

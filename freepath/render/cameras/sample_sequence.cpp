@@ -15,8 +15,8 @@ constexpr uint32_t reverse_bits(uint32_t word) {
 }
 
 /// A nested uniform scramble of a fraction whose bits are in reverse, and come out in order: a
-/// permutation in which each bit is flipped by a hash of those below it alone, as [Laine11,
-/// 3.1] has it; the constants are of [Vegdahl21].
+/// permutation in which each bit is flipped by a hash of those below it alone, an idea of
+/// [Laine11]; the constants are of [Vegdahl21].
 constexpr uint32_t scramble_reversed(uint32_t reversed, uint32_t hash) {
   reversed ^= reversed * 0x3D20ADEAU;
   reversed += hash;

@@ -21,7 +21,7 @@ enum class SampleKind {
 /// With kSobol the pairs of one pixel and dimension, for all samples, are a (0,2)-sequence in base
 /// 2 under nested uniform scrambling [Owen95], its order shuffled likewise: of the first 2^m
 /// samples each box of size 2^-a by 2^-(m-a) holds one. Pairs of other pixels and dimensions are
-/// scrambled and shuffled by other hashes, hence independent ("padding" [Burley20, Sec. 4]).
+/// scrambled and shuffled by other hashes, hence independent ("padding", [Burley20]).
 ///
 /// Both kinds take their words from streams that no walk uses (kSampleStreams and up).
 class SampleSequence {

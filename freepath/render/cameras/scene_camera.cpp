@@ -134,30 +134,34 @@ SceneCamera::Projective::Projective(const OrthographicCamera& camera, const Matr
 SceneCamera::Projective::Projective(const ScreenWindow& screen, double screen_scale,
                                     const Lens& lens, bool parallel, const Matrix4d& matrix,
                                     int width, int height)
-    : is_parallel(parallel),
-      has_lens(lens.radius > 0),
-      focus(static_cast<float>(1 / lens.focal_distance)),
-      origin(row_of(matrix, 3)) {
+    : is_parallel(parallel), has_lens(lens.radius > 0), origin(row_of(matrix, 3)) {
   check_lens(lens);
   const Vec3d x = row_of(matrix, 0);
   const Vec3d y = row_of(matrix, 1);
-  ahead = Vec3f(row_of(matrix, 2));
-  corner = Vec3f(x * (screen_scale * screen.x_min) + y * (screen_scale * screen.y_max));
-  step_x = Vec3f(x * (screen_scale * (screen.x_max - screen.x_min) / width));
-  step_y = Vec3f(y * (screen_scale * (screen.y_min - screen.y_max) / height));
+  const Vec3d z = row_of(matrix, 2);
+  // Directions in units of the depth's image, lest a scale overflow when they are made unit
+  // vectors.
+  const double unit = z.length();
+  ahead = Vec3f(z / unit);
+  focus = static_cast<float>(1 / (unit * lens.focal_distance));
+  const double film_scale = parallel ? screen_scale : screen_scale / unit;
+  corner = x * (film_scale * screen.x_min) + y * (film_scale * screen.y_max);
+  step_x = x * (film_scale * (screen.x_max - screen.x_min) / width);
+  step_y = y * (film_scale * (screen.y_min - screen.y_max) / height);
   lens_x = Vec3f(x * lens.radius);
   lens_y = Vec3f(y * lens.radius);
 }
 
 CameraRay SceneCamera::Projective::ray(float film_x, float film_y, float lens_u,
                                        float lens_v) const {
-  const Vec3f film = corner + step_x * film_x + step_y * film_y;
+  const Vec3d film =
+      corner + step_x * static_cast<double>(film_x) + step_y * static_cast<double>(film_y);
   Vec3d start = origin;
   Vec3f direction = ahead;
   if (is_parallel) {
-    start += Vec3d(film);
+    start += film;
   } else {
-    direction += film;
+    direction += Vec3f(film);
   }
   if (has_lens) {
     // The ray still meets the plane in focus where the one through the lens' centre does.
@@ -191,12 +195,10 @@ SceneCamera::Rays SceneCamera::make_rays(const CameraModel& model, const Matrix4
   if (const auto* camera = std::get_if<OrthographicCamera>(&model)) {
     return Projective(*camera, matrix, width, height);
   }
-  return Spherical{std::get<SphericalCamera>(model).mapping,
-                   row_of(matrix, 3),
-                   Vec3f(row_of(matrix, 0)),
-                   Vec3f(row_of(matrix, 1)),
-                   Vec3f(row_of(matrix, 2)),
-                   1.0F / static_cast<float>(width),
+  const double unit = row_of(matrix, 2).length();
+  return Spherical{std::get<SphericalCamera>(model).mapping, row_of(matrix, 3),
+                   Vec3f(row_of(matrix, 0) / unit),          Vec3f(row_of(matrix, 1) / unit),
+                   Vec3f(row_of(matrix, 2) / unit),          1.0F / static_cast<float>(width),
                    1.0F / static_cast<float>(height)};
 }
 

@@ -28,18 +28,18 @@ struct Lens {
 /// Rays through one point, or through a lens around it.
 struct PerspectiveCamera {
   double fov = 90;  ///< Angle of view of the screen's shorter direction [degrees], in (0, 180).
-  std::optional<double> frame_aspect_ratio;   ///< Width / height; otherwise the film's.
-  std::optional<ScreenWindow> screen_window;  ///< Otherwise the whole screen.
-  Lens lens;
+  std::optional<double> frame_aspect_ratio = {};   ///< Width / height; otherwise the film's.
+  std::optional<ScreenWindow> screen_window = {};  ///< Otherwise the whole screen.
+  Lens lens = {};
 };
 
 /// Parallel rays; the screen lies in the plane z = 0 of camera space, in its units.
 /// @note With a lens, rays leave from around the film's point, so that a point in focus is where it
 ///   is without a lens. pbrt-v4 has them leave from around the camera's origin.
 struct OrthographicCamera {
-  std::optional<double> frame_aspect_ratio;   ///< Width / height; otherwise the film's.
-  std::optional<ScreenWindow> screen_window;  ///< Otherwise the whole screen.
-  Lens lens;
+  std::optional<double> frame_aspect_ratio = {};   ///< Width / height; otherwise the film's.
+  std::optional<ScreenWindow> screen_window = {};  ///< Otherwise the whole screen.
+  Lens lens = {};
 };
 
 /// How the film is laid around a spherical camera.
@@ -80,7 +80,8 @@ class SceneCamera {
 
  private:
   /// The film stands at depth 1 of a perspective camera, and at depth 0 of an orthographic one.
-  /// Vectors are images of those of camera space [world].
+  /// Vectors are images of those of camera space; directions are over the length of the image of
+  /// depth 1 [world].
   struct Projective {
     Projective(const PerspectiveCamera& camera, const Matrix4d& matrix, int width, int height);
     Projective(const OrthographicCamera& camera, const Matrix4d& matrix, int width, int height);
@@ -88,11 +89,11 @@ class SceneCamera {
 
     bool is_parallel;
     bool has_lens;
-    float focus;           // 1 / depth of the plane in focus
-    Vec3d origin;          // of the camera
-    Vec3f ahead;           // of depth 1
-    Vec3f corner;          // of the film, from its depth on the axis
-    Vec3f step_x, step_y;  // from one pixel to the next
+    float focus;   // 1 / distance of the plane in focus [1/world]
+    Vec3d origin;  // of the camera
+    Vec3f ahead;
+    Vec3d corner;          // of the film, from its point on the axis
+    Vec3d step_x, step_y;  // from one pixel to the next
     Vec3f lens_x, lens_y;  // radii of the lens
 
    private:
