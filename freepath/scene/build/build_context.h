@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/scene/pbrt/diagnostics.h"
@@ -22,6 +24,13 @@ struct BuildContext {
   PathScene& scene;
   /// Names of media → PathScene::media.
   std::map<std::string, MediumId, std::less<>> media;
+  /// Names of float textures → PathScene::textures.
+  std::map<std::string, FloatTextureId, std::less<>> float_textures;
+  /// Names of spectrum textures, their colours taken as reflectances and as coefficients. A texture
+  /// is in those of the meanings that something uses, and in the first where nothing does.
+  std::map<std::string, SpectrumTextureId, std::less<>> reflectance_textures, unbounded_textures;
+  /// Of each of PbrtScene::materials its place in PathScene::materials; nothing for an `interface`.
+  std::vector<std::optional<uint32_t>> materials;
 };
 
 /// Which spectrum a parameter's colour stands for.
