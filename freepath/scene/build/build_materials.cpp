@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,7 +24,7 @@ constexpr std::array<std::string_view, 8> kSupported = {
 constexpr std::array<std::string_view, 4> kUnsupported = {"diffusetransmission", "hair", "measured",
                                                           "subsurface"};
 
-/// Mixes of mixes are destroyed by recursion.
+/// Mixes of mixes are looked through at each hit, and destroyed by recursion.
 constexpr int kDeepest = 64;
 
 /// Builds one material from its parameters.
@@ -135,24 +134,26 @@ class MaterialBuilder {
   void build_all();
 
  private:
-  /// Nothing for an interface.
-  std::shared_ptr<const Material> built(std::size_t index, int depth);
-  std::shared_ptr<const Material> build(const PbrtMaterial& material, int depth);
-  Material mix(const ParameterList& list, int depth);
-  std::shared_ptr<const Material> part_of_mix(const ParameterList& list, const std::string& name,
-                                              int depth);
+  struct Built {
+    std::shared_ptr<const Material> material;  ///< Null for an interface.
+    int height = 0;                            ///< Mixes within each other, itself included.
+  };
+
+  const Built& built(std::size_t index, int depth);
+  Built build(const PbrtMaterial& material, int depth);
+  Built mix(const PbrtMaterial& material, int depth);
+  const Built& part_of_mix(const ParameterList& list, const std::string& name, int depth);
 
   BuildContext& context_;
   std::map<std::string, std::size_t, std::less<>> names_;
-  std::vector<std::shared_ptr<const Material>> built_;
-  std::vector<bool> begun_, done_;
+  std::vector<std::optional<Built>> built_;
+  std::vector<bool> begun_;
 };
 
 MaterialBuilder::MaterialBuilder(BuildContext& context)
     : context_(context),
       built_(context.pbrt.materials.size()),
-      begun_(built_.size()),
-      done_(built_.size()) {
+      begun_(built_.size()) {
   for (std::size_t i = 0; i < built_.size(); ++i) {
     const std::string& name = context.pbrt.materials[i].name;
     if (!name.empty()) names_.emplace(name, i);
@@ -162,62 +163,68 @@ MaterialBuilder::MaterialBuilder(BuildContext& context)
 void MaterialBuilder::build_all() {
   context_.materials.assign(built_.size(), std::nullopt);
   for (std::size_t i = 0; i < built_.size(); ++i) {
-    const std::shared_ptr<const Material> material = built(i, 0);
+    const std::shared_ptr<const Material> material = built(i, 0).material;
     if (!material) continue;
     context_.materials[i] = static_cast<uint32_t>(context_.scene.materials.size());
     context_.scene.materials.push_back(*material);
   }
 }
 
-std::shared_ptr<const Material> MaterialBuilder::built(std::size_t index, int depth) {
-  if (done_[index]) return built_[index];
+/// @param depth mixes that this one is being built for
+const MaterialBuilder::Built& MaterialBuilder::built(std::size_t index, int depth) {
+  if (built_[index]) return *built_[index];
   const PbrtMaterial& material = context_.pbrt.materials[index];
   if (begun_[index]) {
     fail_at(material.location, "material {} is a mix of itself", in_quotes(material.name));
   }
-  if (depth == kDeepest) {
-    fail_at(material.location, "material {} lies within more than {} mixes",
-            in_quotes(material.name), kDeepest - 1);
-  }
   begun_[index] = true;
   built_[index] = build(material, depth);
-  done_[index] = true;
   material.parameters.report_unused(context_.diagnostics);
-  return built_[index];
+  return *built_[index];
 }
 
-std::shared_ptr<const Material> MaterialBuilder::build(const PbrtMaterial& material, int depth) {
+MaterialBuilder::Built MaterialBuilder::build(const PbrtMaterial& material, int depth) {
   const std::string& type = material.type;
   const MaterialParameters parameters(context_, material.parameters);
   const auto with_surface = [&](const Material& made) {
     parameters.warn_of_unsupported();
-    return std::make_shared<const Material>(made);
+    return Built{std::make_shared<const Material>(made)};
   };
-  if (type.empty() || type == "none" || type == "interface") return nullptr;
+  if (type.empty() || type == "none" || type == "interface") return {};
   if (type == "diffuse") return with_surface(parameters.diffuse());
   if (type == "conductor") return with_surface(parameters.conductor());
   if (type == "dielectric") return with_surface(parameters.dielectric());
   if (type == "thindielectric") return with_surface(parameters.thin_dielectric());
   if (type == "coateddiffuse") return with_surface(parameters.coated_diffuse());
   if (type == "coatedconductor") return with_surface(parameters.coated_conductor());
-  if (type == "mix") return std::make_shared<const Material>(mix(material.parameters, depth));
+  if (type == "mix") return mix(material, depth);
   fail_unknown_type(material, "material", kSupported, kUnsupported);
 }
 
-Material MaterialBuilder::mix(const ParameterList& list, int depth) {
+MaterialBuilder::Built MaterialBuilder::mix(const PbrtMaterial& material, int depth) {
+  const ParameterList& list = material.parameters;
   const std::span<const std::string> names = list.get_strings("materials");
   if (names.size() != 2) {
     fail_at(list.location_of("materials"),
             "a mix needs the names of two materials in a parameter \"string materials\", has {}",
             names.size());
   }
-  const FloatInput amount = float_input(context_, list, "amount", 0.5);
-  return MixMaterial{part_of_mix(list, names[0], depth), part_of_mix(list, names[1], depth),
-                     amount};
+  int height = kDeepest + 1;
+  MixMaterial made;
+  if (depth < kDeepest) {
+    const Built& first = part_of_mix(list, names[0], depth + 1);
+    const Built& second = part_of_mix(list, names[1], depth + 1);
+    height = 1 + std::max(first.height, second.height);
+    made = {first.material, second.material, float_input(context_, list, "amount", 0.5)};
+  }
+  if (height > kDeepest) {
+    fail_at(material.location, "this mix is part of a nest of more than {} mixes", kDeepest);
+  }
+  return {std::make_shared<const Material>(std::move(made)), height};
 }
 
-std::shared_ptr<const Material> MaterialBuilder::part_of_mix(const ParameterList& list,
-                                                             const std::string& name, int depth) {
+const MaterialBuilder::Built& MaterialBuilder::part_of_mix(const ParameterList& list,
+                                                           const std::string& name, int depth) {
   const SourceLocation& location = list.location_of("materials");
   const auto found = names_.find(name);
   if (found == names_.end()) {
@@ -225,8 +232,8 @@ std::shared_ptr<const Material> MaterialBuilder::part_of_mix(const ParameterList
     for (const auto& entry : names_) known.emplace_back(entry.first);
     fail_at(location, "there is no material {}{}", in_quotes(name), did_you_mean(name, known));
   }
-  std::shared_ptr<const Material> part = built(found->second, depth + 1);
-  if (!part) {
+  const Built& part = built(found->second, depth);
+  if (!part.material) {
     fail_at(location, "material {} is an interface, which cannot be part of a mix",
             in_quotes(name));
   }

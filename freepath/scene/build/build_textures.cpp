@@ -59,8 +59,8 @@ class TextureBuilder {
   };
 
   void note_uses(const PbrtMaterial& material);
-  void build(const Job& job, int depth);
-  void build_parts(const Job& job, int depth);
+  int build(const Job& job, int depth);
+  int build_parts(const Job& job, int depth);
   void add(const Job& job);
   template <class Texture, class Input, class Get>
   Texture compound(const PbrtTexture& texture, const Get& get);
@@ -71,7 +71,8 @@ class TextureBuilder {
 
   BuildContext& context_;
   std::map<std::string, std::size_t, std::less<>> floats_, spectra_;
-  std::set<Job> used_, begun_, done_;
+  std::set<Job> used_, begun_;
+  std::map<Job, int> heights_;  ///< Of what is done.
   /// By path and encoding.
   std::map<std::tuple<std::string, ImageEncoding::Kind, float>,
            std::shared_ptr<const TextureImage>>
@@ -102,29 +103,35 @@ void TextureBuilder::note_uses(const PbrtMaterial& material) {
 void TextureBuilder::build_all() {
   for (const Job& job : used_) build(job, 0);
   for (std::size_t i = 0; i < context_.pbrt.textures.size(); ++i) {
-    const bool has_use = done_.contains({i, ColorMeaning::kUnbounded});
+    const bool has_use = heights_.contains({i, ColorMeaning::kUnbounded});
     if (!has_use) build({i, ColorMeaning::kReflectance}, 0);
     context_.pbrt.textures[i].parameters.report_unused(context_.diagnostics);
   }
 }
 
-void TextureBuilder::build(const Job& job, int depth) {
-  if (done_.contains(job)) return;
+/// @param depth textures that this one is being built for
+/// @return how many textures deep it is, itself included
+int TextureBuilder::build(const Job& job, int depth) {
+  const auto found = heights_.find(job);
+  if (found != heights_.end()) return found->second;
   const PbrtTexture& texture = context_.pbrt.textures[job.texture];
   if (!begun_.insert(job).second) {
     fail_at(texture.location, "texture {} is made of itself", in_quotes(texture.name));
   }
-  if (depth == kDeepest) {
-    fail_at(texture.location, "texture {} lies within more than {} others",
-            in_quotes(texture.name), kDeepest - 1);
+  const int height = depth < kDeepest ? 1 + build_parts(job, depth) : kDeepest + 1;
+  if (height > kDeepest) {
+    fail_at(texture.location, "texture {} is part of a nest of more than {} textures",
+            in_quotes(texture.name), kDeepest);
   }
-  build_parts(job, depth);
   add(job);
-  done_.insert(job);
+  heights_.emplace(job, height);
+  return height;
 }
 
-void TextureBuilder::build_parts(const Job& job, int depth) {
+/// @return the greatest height among them
+int TextureBuilder::build_parts(const Job& job, int depth) {
   const PbrtTexture& texture = context_.pbrt.textures[job.texture];
+  int highest = 0;
   for (const auto& parameter : texture.parameters.all()) {
     if (parameter->type != ParameterType::kTexture) continue;
     const bool floats = kind_of(texture, parameter->name) == PbrtTextureKind::kFloat;
@@ -132,9 +139,11 @@ void TextureBuilder::build_parts(const Job& job, int depth) {
     for (const std::string& name : std::get<std::vector<std::string>>(parameter->values)) {
       const auto found = named.find(name);
       if (found == named.end()) continue;  // an error once it is looked up
-      build({found->second, floats ? ColorMeaning::kReflectance : job.meaning}, depth + 1);
+      const Job part{found->second, floats ? ColorMeaning::kReflectance : job.meaning};
+      highest = std::max(highest, build(part, depth + 1));
     }
   }
+  return highest;
 }
 
 void TextureBuilder::add(const Job& job) {
