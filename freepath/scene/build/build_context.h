@@ -23,9 +23,15 @@ struct BuildContext {
   Diagnostics& diagnostics;
   PathScene& scene;
   /// Names of media → PathScene::media.
-  std::map<std::string, MediumId, std::less<>> media;
-  /// PbrtScene::materials → PathScene::materials; none is a mere boundary.
-  std::vector<std::optional<uint32_t>> materials;
+  std::map<std::string, MediumId, std::less<>> media = {};
+  /// Names of float textures → PathScene::textures.
+  std::map<std::string, FloatTextureId, std::less<>> float_textures = {};
+  /// Names of spectrum textures whose colours are reflectances; of those that nothing uses, too.
+  std::map<std::string, SpectrumTextureId, std::less<>> reflectance_textures = {};
+  /// Names of spectrum textures whose colours are coefficients. A texture may be in both.
+  std::map<std::string, SpectrumTextureId, std::less<>> unbounded_textures = {};
+  /// Of each of PbrtScene::materials its place in PathScene::materials; nothing for an `interface`.
+  std::vector<std::optional<uint32_t>> materials = {};
 };
 
 /// Which spectrum a parameter's colour stands for.
