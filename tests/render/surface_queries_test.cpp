@@ -161,6 +161,16 @@ TEST(Surfaces, CrossingsOfRandomRaysAlternateThroughClosedBoundaries) {
   }
 }
 
+TEST(Surfaces, CrossingsOfCoincidentBoundariesAreEachOnce) {
+  SurfaceScene scene;
+  for (uint32_t i = 0; i < 3; ++i) scene.shapes.push_back(boundary(cube(1), i, {3, 0, 0}));
+  const Surfaces surfaces(scene, Vec3d(0));
+  BoundaryCrossings crossings;
+  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(1, 0, 0), kFar, crossings));
+  ASSERT_EQ(crossings.all().size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(crossings.all()[i].enters, i < 3);
+}
+
 TEST(Surfaces, MoreCrossingsThanThereIsRoomForKeepTheNearest) {
   SurfaceScene scene;
   for (uint32_t i = 0; i < 30; ++i) {
@@ -172,7 +182,8 @@ TEST(Surfaces, MoreCrossingsThanThereIsRoomForKeepTheNearest) {
   EXPECT_TRUE(crossings.overflowed());
   ASSERT_EQ(crossings.all().size(), BoundaryCrossings::kCapacity);
   for (uint32_t i = 0; i < BoundaryCrossings::kCapacity; ++i) {
-    EXPECT_NEAR(crossings.all()[i].t, 1 + i / 2 + (i % 2 == 0 ? -0.4 : 0.4), 1e-5);
+    const uint32_t centre = 1 + i / 2;
+    EXPECT_NEAR(crossings.all()[i].t, centre + (i % 2 == 0 ? -0.4 : 0.4), 1e-5);
   }
 }
 
@@ -186,7 +197,7 @@ TEST(Surfaces, AnInstanceIsMetAsTheSameShapeInItsPlace) {
       Matrix4d back;
       back.setTranslation(-Vec3d(in_group[3][0], in_group[3][1], in_group[3][2]));
       SurfaceScene scene;
-      scene.groups.push_back({});
+      scene.groups.emplace_back();
       scene.groups.push_back({shape_of(geometry, in_group, 9)});
       scene.instances.push_back({1, back * random.transform(2, mirrored)});
       const Matrix4d place = scene.instances[0].instance_to_world;

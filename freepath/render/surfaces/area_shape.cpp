@@ -136,15 +136,18 @@ class AreaShape::PatchKind : public Kind {
   double area(uint32_t index) const override {
     // Gauss's rule of three points in each of 4 x 4 cells.
     constexpr int kCells = 4;
-    constexpr std::array<double, 3> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417};
+    static constexpr std::array<double, 3> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417};
     constexpr std::array<double, 3> kWeights = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     const BilinearPatch patch = mesh_.patch(index);
+    const auto place = [](int i) {
+      const int cell = i / 3;
+      return (cell + kPlaces[i % 3]) / kCells;
+    };
     double sum = 0;
     for (int i = 0; i < 3 * kCells; ++i) {
       for (int j = 0; j < 3 * kCells; ++j) {
-        const double u = (i / 3 + kPlaces[i % 3]) / kCells;
-        const double v = (j / 3 + kPlaces[j % 3]) / kCells;
-        sum += kWeights[i % 3] * kWeights[j % 3] * patch.normal(u, v).length();
+        const double weight = kWeights[i % 3] * kWeights[j % 3];
+        sum += weight * patch.normal(place(i), place(j)).length();
       }
     }
     return sum / (kCells * kCells);
@@ -210,10 +213,11 @@ class AreaShape::QuadricKind : public Kind {
     // the ratio is constant.
     constexpr int kSteps = 64;
     double sum = 0;
-    for (int i = 0; i < kSteps * kSteps; ++i) {
-      const double u0 = (i % kSteps + 0.5) / kSteps;
-      const double u1 = (i / kSteps + 0.5) / kSteps;
-      sum += area_ratio(traced_.quadric.describe(traced_.quadric.sample(u0, u1)).normal);
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {
+        const Vec3d p = traced_.quadric.sample((i + 0.5) / kSteps, (j + 0.5) / kSteps);
+        sum += area_ratio(traced_.quadric.describe(p).normal);
+      }
     }
     area_ = traced_.quadric.area() * sum / (kSteps * kSteps);
     const AffineMap& map = traced_.object_to_part;

@@ -40,19 +40,23 @@ void BoundaryCrossings::clear() {
 }
 
 void BoundaryCrossings::add(const BoundaryCrossing& crossing) {
+  BoundaryCrossing* const begin = crossings_.data();
+  BoundaryCrossing* const end = begin + count_;
+  BoundaryCrossing* const place = std::upper_bound(
+      begin, end, crossing.t, [](float t, const BoundaryCrossing& other) { return t < other.t; });
   // Two triangles that share an edge may both claim a ray through it.
   constexpr float kSamePlace = 1e-6F;
+  const float near = kSamePlace * crossing.t;
   const auto is_same = [&](const BoundaryCrossing& other) {
     return other.shape == crossing.shape && other.instance == crossing.instance &&
-           other.enters == crossing.enters &&
-           std::abs(other.t - crossing.t) <= kSamePlace * crossing.t;
+           other.enters == crossing.enters;
   };
-  BoundaryCrossing* const end = crossings_.data() + count_;
-  BoundaryCrossing* const place =
-      std::upper_bound(crossings_.data(), end, crossing.t,
-                       [](float t, const BoundaryCrossing& other) { return t < other.t; });
-  if (place != crossings_.data() && is_same(*(place - 1))) return;
-  if (place != end && is_same(*place)) return;
+  for (auto* at = place; at != begin && crossing.t - (at - 1)->t <= near; --at) {
+    if (is_same(*(at - 1))) return;
+  }
+  for (auto* at = place; at != end && at->t - crossing.t <= near; ++at) {
+    if (is_same(*at)) return;
+  }
   if (count_ < kCapacity) {
     std::move_backward(place, end, end + 1);
     ++count_;
@@ -272,7 +276,9 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
   const Vec3f& n = point.normal;
   const Vec3f& p = point.position;
   const float error = std::abs(n.x * p.x) + std::abs(n.y * p.y) + std::abs(n.z * p.z);
-  const float offset = kRoundings * error + data_->smallest_offset[point.shape];
+  const std::vector<float>& smallest = data_->smallest_offset;
+  const float offset =
+      kRoundings * error + (point.shape < smallest.size() ? smallest[point.shape] : 0);
   return p + n * (n.dot(direction) < 0 ? -offset : offset);
 }
 
