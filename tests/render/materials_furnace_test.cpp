@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "freepath/render/materials/fresnel.h"
 #include "tests/render/materials_for_tests.h"
@@ -112,6 +113,59 @@ TEST(Furnace, CoatedWhiteLosesNothing) {
       EXPECT_TRUE(check_mean("coated white", energy(*material, cosine, world.in_rgb(), 1, 50'000),
                              1, {4, 1e-5, 2e-3}));
     }
+  }
+}
+
+/// What evaluate() scatters, by directions that are spread by their cosine.
+RunningStatistics evaluated(const Material& material, double cosine, const SurfaceContext& context,
+                            int samples) {
+  const SurfacePoint point = askew_point();
+  const Vec3f travel = -on_surface(point, cosine, 0.7);
+  RandomStream random(8, 0, 0, 0);
+  RunningStatistics result;
+  for (int i = 0; i < samples; ++i) {
+    const double height = std::sqrt(1.0 - random.uniform());
+    const Vec3f next = on_surface(point, height, 2 * std::numbers::pi * random.uniform());
+    const MaterialValue found = material.evaluate(point, travel, next, random, context);
+    result.add(found.value[0] * std::numbers::pi / height);
+  }
+  return result;
+}
+
+// Of the walks themselves: a smooth coating reflects F at once, which is specular, and the rest
+// comes back sooner or later.
+TEST(Furnace, EvaluatingACoatedWhiteLosesNothing) {
+  MaterialWorld world;
+  const SpectrumId white = world.grey(1);
+  const Coating thin{world.index(1.5), {}, 1e-7F, SpectrumId{}, 0.0F, 10'000, 1};
+  Coating milk = thin;
+  milk.albedo = white;
+  milk.thickness = 1.0F;
+  milk.g = 0.3F;
+  const Material clear = CoatedDiffuseMaterial{thin, white};
+  const Material milky = CoatedDiffuseMaterial{milk, white};
+  world.update();
+  for (const Material* material : {&clear, &milky}) {
+    EXPECT_TRUE(check_mean("coated white", evaluated(*material, 0.8, world.in_rgb(), 450'000),
+                           1 - fresnel_dielectric(0.8F, 1.5F), {4, 1e-5, 1.7e-3}));
+  }
+}
+
+TEST(Furnace, EvaluatingARoughCoatingIsAsSharplyWhatSamplingSays) {
+  MaterialWorld world;
+  const SpectrumId white = world.grey(1);
+  Coating coating{world.index(1.5), {0.4F, 0.4F, false}, 1e-7F, SpectrumId{}, 0.0F, 1000, 1};
+  const Material clear = CoatedDiffuseMaterial{coating, white};
+  coating.albedo = white;
+  coating.thickness = 1.0F;
+  const Material milky = CoatedDiffuseMaterial{coating, white};
+  world.update();
+  for (const Material* material : {&clear, &milky}) {
+    const RunningStatistics sampled = energy(*material, 0.8, world.in_rgb(), 1, 400'000);
+    const RunningStatistics found = evaluated(*material, 0.8, world.in_rgb(), 400'000);
+    EXPECT_TRUE(check_mean("rough coating", found.mean(),
+                           std::hypot(found.standard_error(), sampled.standard_error()),
+                           found.count(), sampled.mean(), {4, 1e-5, 3e-3}));
   }
 }
 

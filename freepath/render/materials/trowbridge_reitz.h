@@ -42,11 +42,7 @@ class TrowbridgeReitz {
 
   /// Share of the facets that a direction sees, of those that face it.
   float masking(const Vec3f& direction) const { return 1.0F / (1.0F + lambda(direction)); }
-  /// Share of the facets that both directions see.
-  float masking(const Vec3f& a, const Vec3f& b) const {
-    return 1.0F / (1.0F + lambda(a) + lambda(b));
-  }
-  /// masking(a, b) / masking(a).
+  /// Share of the facets that `b` sees, too, of those that `a` sees.
   float masking_of_other(const Vec3f& a, const Vec3f& b) const {
     const float seen = 1.0F + lambda(a);
     return seen / (seen + lambda(b));

@@ -69,7 +69,7 @@ ImageWrap image_wrap(std::string_view name) {
   if (name == "repeat") return ImageWrap::kRepeat;
   if (name == "black") return ImageWrap::kBlack;
   if (name == "clamp") return ImageWrap::kClamp;
-  fail("the wrap \"{}\" is not known; use \"repeat\", \"black\" or \"clamp\"", name);
+  fail(R"(the wrap "{}" is not known; use "repeat", "black" or "clamp")", name);
 }
 
 ImageEncoding image_encoding(std::string_view text) {
@@ -85,7 +85,7 @@ ImageEncoding image_encoding(std::string_view text) {
       return {ImageEncoding::Kind::kGamma, gamma};
     }
   }
-  fail("the encoding \"{}\" is not known; use \"sRGB\", \"linear\" or \"gamma 2.2\"", text);
+  fail(R"(the encoding "{}" is not known; use "sRGB", "linear" or "gamma 2.2")", text);
 }
 
 bool holds_encoded_integers(const std::string& path) {
