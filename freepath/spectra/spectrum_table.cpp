@@ -78,6 +78,7 @@ SpectrumValues SpectrumTable::in_rgb() const {
     values.reflectance_basis_[i] = values.illuminant_basis_[i] = to_channels(unit);
     values.to_rgb_[i] = Vec3f(unit);
   }
+  values.to_rgb_[3] = Vec3f(0);  // times a channel that is 0, but must not be NaN
   values.channels_ = 3;
   return values;
 }
