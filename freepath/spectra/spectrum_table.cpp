@@ -87,6 +87,7 @@ SpectrumValues SpectrumTable::in_rgb() const {
         to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
     values.to_rgb_[i] = Vec3f(unit);
   }
+  values.to_rgb_[3] = Vec3f(0);  // times a channel that is 0, but must not be NaN
   values.channels_ = 3;
   values.space_ = &space_;
   return values;

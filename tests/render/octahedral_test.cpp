@@ -107,7 +107,7 @@ TEST(OctahedralEnvironment, IsContinuousEverywhere) {
     constexpr int kSteps = 20'000;
     float before = environment.evaluate(frame.tangent).radiance.x;
     for (int i = 1; i <= kSteps; ++i) {
-      const float angle = static_cast<float>(2 * kPi * i / kSteps);
+      const auto angle = static_cast<float>(2 * kPi * i / kSteps);
       const float after =
           environment.evaluate(frame.to_world(std::cos(angle), std::sin(angle), 0)).radiance.x;
       ASSERT_LE(std::abs(after - before), 0.15F);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "freepath/render/lights/photometry.h"
 #include "freepath/spectra/wavelengths.h"
 #include "tests/render/scene_lights_cases.h"
 #include "tests/statistics.h"
@@ -145,7 +146,7 @@ TEST(SceneLights, DrawsFollowTheDensityThatRaysFind) {
   for (const LightsCase& scene : all_cases()) {
     const SceneLights lights(scene.description, spectra().table);
     std::vector<double> expected(kBins * kBins + 1, 0.0);
-    for_directions(kBins * 60, [&](const Vec3f& d, double solid_angle) {
+    for_directions(kBins * 40, [&](const Vec3f& d, double solid_angle) {
       if (in_sun(scene, d)) return;  // which has a bin of its own
       expected[bin_of(d)] +=
           kSamples * solid_angle * trace(scene, lights, kPosition, d, values).pdf;
@@ -254,6 +255,34 @@ TEST(SceneLights, SeesNothingFromBehindAPortal) {
   for (const Vec3f& d : {Vec3f(0, 0, 1), Vec3f(0, 0, -1)}) {
     EXPECT_TRUE(is_black(lights.escape(behind, d, values).radiance));
   }
+}
+
+TEST(SceneLights, AnAreaLightGivesItsRadianceTimesItsSolidAngle) {
+  const SpectrumValues values = spectra().table.in_rgb();
+  const auto sphere = std::make_shared<testing::TestSphere>(Vec3f(2, 0, 1), 1.0F);
+  const auto mesh = std::make_shared<testing::TestMesh>(std::vector<testing::TestMesh::Corners>{
+      {Vec3f(-1, -2, -1), Vec3f(0, -2, 2), Vec3f(1, -2, -1)}});
+  const auto fluence = [&](std::shared_ptr<const testing::TestEmitter> emitter, bool two_sided) {
+    LightsCase scene;
+    testing::add_emitter(&scene, std::move(emitter),
+                         {.radiance = spectra().constant, .scale = 3, .two_sided = two_sided});
+    const SceneLights lights(scene.description, spectra().table);
+    RandomStream random(1, 2, 3, 4);
+    testing::RunningStatistics estimates;
+    for (int i = 0; i < 100'000; ++i) {
+      const LightDraw draw = draw_with(lights, values, &random);
+      // The constant spectrum is not white, but has a luminance of 3 after all.
+      const Vec3d rgb(values.to_rgb(draw.radiance));
+      estimates.add(draw.pdf > 0 ? luminance_weights(spectra().table.space()).dot(rgb) / draw.pdf
+                                 : 0);
+    }
+    return estimates;
+  };
+  EXPECT_TRUE(testing::check_mean("sphere", fluence(sphere, false),
+                                  3 * sphere->solid_angle(kPosition), {.absolute = 1e-4}));
+  const double triangle = 3 * mesh->solid_angle(0, kPosition);
+  EXPECT_TRUE(testing::check_mean("triangle", fluence(mesh, true), triangle,
+                                  {.absolute = 1e-4, .largest_relative_error = 3e-3}));
 }
 
 TEST(SceneLights, AnInvisibleAreaLightIsOnlyDrawn) {

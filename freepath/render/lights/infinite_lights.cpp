@@ -60,9 +60,8 @@ void InfiniteLights::add(const ConstantInfiniteLight& light, const Vec3d& origin
   lights_.push_back(std::move(result));
 }
 
-void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin,
-                         const SpectrumTable& table) {
-  const Vec3d weights = luminance_weights(table.space());
+void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin) {
+  const Vec3d weights = luminance_weights(rgb_color_space("srgb"));
   const std::string name = light.name + ": " + light.image.name;
   const LightFrame frame(light.light_to_world, light.name);
   Radiance radiance;
@@ -97,20 +96,20 @@ void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin,
   lights_.push_back(std::move(result));
 }
 
-void InfiniteLights::add(EnvironmentLight light, const SpectrumTable& table) {
+void InfiniteLights::add(EnvironmentLight light) {
   const double factor = light_factor(light.scale, {}, 0, light.name);
   const double fluence =
-      luminance_weights(table.space()).dot(Vec3d(colour_of(light.environment.fluence())));
+      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(colour_of(light.environment.fluence())));
   if (!(fluence * factor > 0)) return;
   Light result{std::move(light.environment), static_cast<float>(factor)};
   result.importance = fluence * factor;
   lights_.push_back(std::move(result));
 }
 
-void InfiniteLights::add(const SunLight& light, const SpectrumTable& table) {
+void InfiniteLights::add(const SunLight& light) {
   const double factor = light_factor(light.scale, {}, 0, light.name);
   const double irradiance =
-      luminance_weights(table.space()).dot(Vec3d(colour_of(light.sun.irradiance())));
+      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(colour_of(light.sun.irradiance())));
   if (!(irradiance * factor > 0)) return;
   Light result{light.sun, static_cast<float>(factor)};
   result.importance = irradiance * factor;

@@ -26,9 +26,9 @@ class InfiniteLights {
  public:
   /// Lights of each kind; those that are black are left out.
   void add(const ConstantInfiniteLight& light, const Vec3d& origin, const SpectrumTable& table);
-  void add(ImageInfiniteLight light, const Vec3d& origin, const SpectrumTable& table);
-  void add(EnvironmentLight light, const SpectrumTable& table);
-  void add(const SunLight& light, const SpectrumTable& table);
+  void add(ImageInfiniteLight light, const Vec3d& origin);
+  void add(EnvironmentLight light);
+  void add(const SunLight& light);
   /// To be called after the last light.
   void finish();
 

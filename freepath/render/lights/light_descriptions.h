@@ -3,8 +3,7 @@
 ///
 /// All have pbrt-v4's meaning [Pharr23]. Spectra are those of a SpectrumTable, of the role
 /// kIlluminant; each is normalised (photometry.h) and then multiplied by `scale`. Images hold
-/// linear colours of the table's space, their first row is the top. `name` is what messages call
-/// the light.
+/// linear sRGB, their first row is the top. `name` is what messages call the light.
 
 #include <array>
 #include <cstdint>

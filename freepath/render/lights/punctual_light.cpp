@@ -109,7 +109,7 @@ PunctualLight::PunctualLight(const GoniometricLight& light, const Vec3d& origin,
 }
 
 PunctualLight::PunctualLight(const ProjectionLight& light, const Vec3d& origin,
-                             const SpectrumTable& table)
+                             const SpectrumTable& /*table*/)
     : kind_(Kind::kProjection) {
   const Image& image = light.image.pixels;
   const std::string name = light.name + ": " + light.image.name;
@@ -124,7 +124,7 @@ PunctualLight::PunctualLight(const ProjectionLight& light, const Vec3d& origin,
   const double pixel = 2 * std::tan(radians(light.fov) / 2) / std::min(width_, height_);
   half_width_ = static_cast<float>(0.5 * pixel * width_);
   half_height_ = static_cast<float>(0.5 * pixel * height_);
-  const Vec3d weights = luminance_weights(table.space());
+  const Vec3d weights = luminance_weights(rgb_color_space("srgb"));
   double flux = 0;
   for (int row = 0; row < height_; ++row) {
     const double y = pixel * (row - 0.5 * height_);

@@ -47,9 +47,11 @@ SceneLights::SceneLights(SceneLightsDescription description, const SpectrumTable
             punctual_.emplace_back(one, origin, table);
           } else if constexpr (std::is_same_v<Kind, EnvironmentLight> ||
                                std::is_same_v<Kind, SunLight>) {
-            infinite_.add(std::move(one), table);
+            infinite_.add(std::move(one));
+          } else if constexpr (std::is_same_v<Kind, ImageInfiniteLight>) {
+            infinite_.add(std::move(one), origin);
           } else {
-            infinite_.add(std::move(one), origin, table);
+            infinite_.add(one, origin, table);
           }
         },
         light);
@@ -107,7 +109,7 @@ SceneLights::Emission SceneLights::make_emission(const AreaEmission& description
 
 std::vector<LightBounds> SceneLights::add_area_lights(const SceneLightsDescription& description,
                                                       const SpectrumTable& table) {
-  const Vec3d weights = luminance_weights(table.space());
+  const Vec3d weights = luminance_weights(rgb_color_space("srgb"));
   std::vector<double> means;  // luminance of each emission's image
   for (const AreaEmission& emission : description.emissions) {
     emissions_.push_back(make_emission(emission));
