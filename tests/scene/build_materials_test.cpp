@@ -207,7 +207,7 @@ TEST(BuildMaterials, RefusesMixesThatAreNestedTooDeep) {
   std::string up = first, down = first;
   for (int i = 1; i <= 64; ++i) {
     up += of_the_last(i);
-    down = of_the_last(i) + down;
+    down.insert(0, of_the_last(i));
   }
   EXPECT_EQ(build_error(with_materials(up)), "");
   EXPECT_EQ(build_error(with_materials(down)), "");

@@ -98,7 +98,7 @@ TEST(BuildTextures, RefuseToBeNestedTooDeep) {
   std::string up = first, down = first;
   for (int i = 1; i < 64; ++i) {
     up += of_the_last(i);
-    down = of_the_last(i) + down;
+    down.insert(0, of_the_last(i));
   }
   EXPECT_EQ(texture_error(up), "");
   EXPECT_EQ(texture_error(down), "");
@@ -205,9 +205,8 @@ TEST(BuildTextures, SayWhatIsWrongWithImages) {
             "scene.pbrt:2:1: 'filename' names no file");
   const TwoPixels pixels;
   const auto error_with = [&](const std::string& parameter) {
-    return texture_error(
-        fmt::format("Texture \"t\" \"float\" \"imagemap\" {} \"string filename\" \"{}\"", parameter,
-                    pixels.path()));
+    return texture_error(fmt::format(R"(Texture "t" "float" "imagemap" {} "string filename" "{}")",
+                                     parameter, pixels.path()));
   };
   EXPECT_EQ(error_with(R"("string wrap" "mirror")"),
             "scene.pbrt:2:32: the wrap \"mirror\" is not known; use \"repeat\", \"black\" or "
