@@ -44,8 +44,8 @@ TEST(BuildMaterials, HasOneMaterialForEachThatIsNoInterface) {
       Material "none"
       Material "diffuse" "rgb reflectance" [ .4 .5 .6 ])"));
   ASSERT_EQ(built.scene().materials.size(), 3U);
-  const std::vector<std::optional<uint32_t>> expected = {0,           std::nullopt, 1, std::nullopt,
-                                                         std::nullopt, 2};
+  const std::vector<std::optional<uint32_t>> expected = {
+      0, std::nullopt, 1, std::nullopt, std::nullopt, 2};
   EXPECT_EQ(built.materials(), expected);
   expect_near(built.albedo(0), Vec3f(0.5F));
   expect_near(built.albedo(1), {0.1F, 0.2F, 0.3F}, 3e-4F);
@@ -87,9 +87,10 @@ TEST(BuildMaterials, ConductorsTakeAReflectanceInPlaceOfAnIndex) {
   expect_near(built.albedo(1), {0.8F, 0.6F, 0.4F}, 1e-3F);
   EXPECT_EQ(material_error(R"("conductor" "rgb reflectance" [ 1 1 1 ] "rgb k" [ 3 3 3 ])"),
             "scene.pbrt:2:50: parameters 'k' and 'reflectance' exclude each other");
-  EXPECT_EQ(material_error(
-                R"("coatedconductor" "rgb reflectance" [ 1 1 1 ] "spectrum conductor.eta" "metal-Au-eta")"),
-            "scene.pbrt:2:56: parameters 'conductor.eta' and 'reflectance' exclude each other");
+  EXPECT_EQ(
+      material_error(
+          R"("coatedconductor" "rgb reflectance" [ 1 1 1 ] "spectrum conductor.eta" "metal-Au-eta")"),
+      "scene.pbrt:2:56: parameters 'conductor.eta' and 'reflectance' exclude each other");
 }
 
 TEST(BuildMaterials, RoughnessesAlongUAndVReplaceTheOneForBoth) {
@@ -156,8 +157,8 @@ TEST(BuildMaterials, CoatedMaterialsTakeAllParameters) {
   EXPECT_EQ(conductor.coating.roughness.v, FloatInput(0.1F));
   EXPECT_EQ(conductor.roughness.u, FloatInput(0.3F));
   EXPECT_EQ(conductor.roughness.v, FloatInput(0.0F));
-  const auto mirror = only_material<CoatedConductorMaterial>(
-      R"("coatedconductor" "rgb reflectance" [ .9 .9 .9 ])");
+  const auto mirror =
+      only_material<CoatedConductorMaterial>(R"("coatedconductor" "rgb reflectance" [ .9 .9 .9 ])");
   EXPECT_TRUE(std::holds_alternative<NormalReflectance>(mirror.index));
 }
 
@@ -199,13 +200,14 @@ TEST(BuildMaterials, RefusesMixesThatAreNestedTooDeep) {
   const std::string first = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
   const auto of_the_last = [](int i) {
     return fmt::format(
-        "MakeNamedMaterial \"m{}\" \"string type\" \"mix\" \"string materials\" [ \"m{}\" \"m0\" ]\n", i,
-        i - 1);
+        "MakeNamedMaterial \"m{}\" \"string type\" \"mix\" \"string materials\" [ \"m{}\" \"m0\" "
+        "]\n",
+        i, i - 1);
   };
   std::string up = first, down = first;
   for (int i = 1; i <= 64; ++i) {
     up += of_the_last(i);
-    down = of_the_last(i) + down;
+    down.insert(0, of_the_last(i));
   }
   EXPECT_EQ(build_error(with_materials(up)), "");
   EXPECT_EQ(build_error(with_materials(down)), "");

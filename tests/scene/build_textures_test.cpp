@@ -1,6 +1,7 @@
 // Textures built from text, alone and within each other.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -97,7 +98,7 @@ TEST(BuildTextures, RefuseToBeNestedTooDeep) {
   std::string up = first, down = first;
   for (int i = 1; i < 64; ++i) {
     up += of_the_last(i);
-    down = of_the_last(i) + down;
+    down.insert(0, of_the_last(i));
   }
   EXPECT_EQ(texture_error(up), "");
   EXPECT_EQ(texture_error(down), "");
@@ -108,10 +109,11 @@ TEST(BuildTextures, RefuseToBeNestedTooDeep) {
 }
 
 TEST(BuildTextures, SayWhichTextureIsMissing) {
-  EXPECT_EQ(texture_error(R"(Texture "rust" "spectrum" "constant"
+  EXPECT_EQ(
+      texture_error(R"(Texture "rust" "spectrum" "constant"
 Material "conductor" "texture roughness" "rust")"),
-            "scene.pbrt:3:22: parameter 'roughness' needs a float texture, and 'rust' is a spectrum "
-            "texture");
+      "scene.pbrt:3:22: parameter 'roughness' needs a float texture, and 'rust' is a spectrum "
+      "texture");
   EXPECT_EQ(texture_error(R"(Texture "rust" "float" "constant"
 Material "diffuse" "texture reflectance" "rust")"),
             "scene.pbrt:3:20: parameter 'reflectance' needs a spectrum texture, and 'rust' is a "
@@ -155,7 +157,7 @@ Texture "t" "float" "constant" "float valu" 2)");
 /// An image of two pixels beside each other, in a file that is there while this lives.
 class TwoPixels {
  public:
-  TwoPixels() : path_(std::filesystem::temp_directory_path() / "freepath_two_pixels.exr") {
+  TwoPixels() : path_(std::filesystem::path(::testing::TempDir()) / name()) {
     Image image;
     image.width = 2;
     image.height = 1;
@@ -173,6 +175,9 @@ class TwoPixels {
   std::string path() const { return path_.string(); }
 
  private:
+  /// Tests may run at the same time.
+  static std::string name() { return fmt::format("freepath_two_pixels_{}.exr", getpid()); }
+
   std::filesystem::path path_;
 };
 
@@ -200,9 +205,8 @@ TEST(BuildTextures, SayWhatIsWrongWithImages) {
             "scene.pbrt:2:1: 'filename' names no file");
   const TwoPixels pixels;
   const auto error_with = [&](const std::string& parameter) {
-    return texture_error(fmt::format(
-        "Texture \"t\" \"float\" \"imagemap\" {} \"string filename\" \"{}\"", parameter,
-        pixels.path()));
+    return texture_error(fmt::format(R"(Texture "t" "float" "imagemap" {} "string filename" "{}")",
+                                     parameter, pixels.path()));
   };
   EXPECT_EQ(error_with(R"("string wrap" "mirror")"),
             "scene.pbrt:2:32: the wrap \"mirror\" is not known; use \"repeat\", \"black\" or "

@@ -23,6 +23,7 @@ auto texture_of(const Textures& textures, const Others& others, const ParameterL
             kind, in_quotes(texture), other_kind);
   }
   std::vector<std::string_view> known;
+  known.reserve(textures.size());
   for (const auto& entry : textures) known.emplace_back(entry.first);
   fail_at(location, "there is no {} texture {}{}", kind, in_quotes(texture),
           did_you_mean(texture, known));
@@ -91,9 +92,9 @@ SpectrumId index_input(BuildContext& context, const ParameterList& list, std::st
   SpectrumTable& spectra = *context.scene.spectra;
   const std::optional<ParameterType> type = list.type_of(name);
   if (type && is_spectrum(*type)) {
-    return spectra.add(distribution_of(context, list.get_spectrum(name, {}),
-                                       ColorMeaning::kUnbounded, list, name),
-                       SpectrumRole::kIndex);
+    return spectra.add(
+        distribution_of(context, list.get_spectrum(name, {}), ColorMeaning::kUnbounded, list, name),
+        SpectrumRole::kIndex);
   }
   if (type && *type != ParameterType::kFloat) {
     fail_type(list, name, "float, rgb, spectrum or blackbody");

@@ -151,9 +151,7 @@ class MaterialBuilder {
 };
 
 MaterialBuilder::MaterialBuilder(BuildContext& context)
-    : context_(context),
-      built_(context.pbrt.materials.size()),
-      begun_(built_.size()) {
+    : context_(context), built_(context.pbrt.materials.size()), begun_(built_.size()) {
   for (std::size_t i = 0; i < built_.size(); ++i) {
     const std::string& name = context.pbrt.materials[i].name;
     if (!name.empty()) names_.emplace(name, i);

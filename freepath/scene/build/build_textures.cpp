@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -55,7 +54,9 @@ class TextureBuilder {
     std::size_t texture;
     ColorMeaning meaning;
 
-    auto operator<=>(const Job&) const = default;
+    bool operator<(const Job& other) const {
+      return std::pair(texture, meaning) < std::pair(other.texture, other.meaning);
+    }
   };
 
   void note_uses(const PbrtMaterial& material);
@@ -74,8 +75,7 @@ class TextureBuilder {
   std::set<Job> used_, begun_;
   std::map<Job, int> heights_;  ///< Of what is done.
   /// By path and encoding.
-  std::map<std::tuple<std::string, ImageEncoding::Kind, float>,
-           std::shared_ptr<const TextureImage>>
+  std::map<std::tuple<std::string, ImageEncoding::Kind, float>, std::shared_ptr<const TextureImage>>
       images_;
 };
 
@@ -185,10 +185,9 @@ Texture TextureBuilder::compound(const PbrtTexture& texture, const Get& get) {
 FloatTexture TextureBuilder::float_texture(const PbrtTexture& texture) {
   const ParameterList& list = texture.parameters;
   if (texture.type == "constant") return static_cast<float>(list.get_float("value", 1));
-  return compound<FloatTexture, FloatInput>(texture,
-                                            [&](std::string_view name, double otherwise) {
-                                              return float_input(context_, list, name, otherwise);
-                                            });
+  return compound<FloatTexture, FloatInput>(texture, [&](std::string_view name, double otherwise) {
+    return float_input(context_, list, name, otherwise);
+  });
 }
 
 SpectrumTexture TextureBuilder::spectrum_texture(const PbrtTexture& texture, ColorMeaning meaning) {

@@ -19,7 +19,8 @@ struct ScatteringPreset {
 /// Solid and opaque materials of [Jensen01, Fig. 5], and liquids and powders at their natural
 /// concentrations after [Narasimhan06]. Those were measured diluted in 23 litres of water;
 /// the coefficients here are the paper's divided by the concentration, the scattering times
-/// 1 - g. Their absorption is a difference of rounded numbers and as coarse.
+/// 1 - g. Their absorption is a difference of rounded numbers and as coarse. The numbers are taken
+/// from pbrt-v4's table and were not compared with the printed ones.
 ///
 /// The names are those of pbrt's parameter "preset" ("Skimmilk", "Lowfat Milk"), with their case.
 /// @return nothing for an unknown name
