@@ -193,16 +193,17 @@ Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectr
 
 std::shared_ptr<const Medium> make_homogeneous_medium(const std::string& name, const Box3d& box,
                                                       float largest_sigma_t) {
-  BrickMapBuilder builder(Vec3i(0), Vec3i(0), 0);
-  builder.set_voxel(Vec3i(0), 1.0F);
+  // Filters let the outermost voxels fade, so that the box ends at their centres.
+  constexpr int kVoxels = 3;
+  BrickMapBuilder builder(Vec3i(0), Vec3i(kVoxels - 1), 0);
+  for (int i = 0; i < kVoxels * kVoxels * kVoxels; ++i) {
+    builder.set_voxel(Vec3i(i % kVoxels, i / kVoxels % kVoxels, i / kVoxels / kVoxels), 1.0F);
+  }
   auto field = std::make_shared<Field>();
   field->name = name;
   field->voxels = std::move(builder).finish();
-  const Vec3d size = box.size();
-  field->index_to_world.setScale(size);
-  field->index_to_world[3][0] = box.center().x;
-  field->index_to_world[3][1] = box.center().y;
-  field->index_to_world[3][2] = box.center().z;
+  field->index_to_world.setScale(box.size() / double{kVoxels - 1});
+  for (int axis = 0; axis < 3; ++axis) field->index_to_world[3][axis] = box.min[axis];
   Component component;
   component.density = field;
   component.sigma_s = Spectrum(largest_sigma_t);
