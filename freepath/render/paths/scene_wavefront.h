@@ -8,6 +8,7 @@
 
 #include "freepath/base/random.h"
 #include "freepath/render/film.h"
+#include "freepath/render/layer_recorder.h"
 #include "freepath/render/path_wavefront.h"
 #include "freepath/render/paths/path_colors.h"
 #include "freepath/render/paths/path_scene.h"
@@ -53,7 +54,7 @@ class SceneWavefront {
   bool needs_surfaces_first(const ScenePath& path) const;
   void find_surface(ScenePath& path) const;
 
-  void escape(ScenePath& path) const;
+  void escape(ScenePath& path);
   void meet_surface(std::size_t slot);
   void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
   void scatter_at_surface(std::size_t slot);
@@ -61,7 +62,9 @@ class SceneWavefront {
   /// @return false if the path has ended
   bool survives(ScenePath& path, RandomStream& random) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
-  void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal) const;
+  void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal);
+  Spectrum rgb_of(const ScenePath& path, const Channels& radiance) const;
+  Spectrum transmittance_of(const ScenePath& path) const;
   void finish(ScenePath& path);
 
   const SceneSetup& setup_;
@@ -72,6 +75,8 @@ class SceneWavefront {
   FlightStream flights_;
   ShadowTracer shadows_;
   std::vector<PathSample> results_;
+  LayerRecorder layers_;  // of the results
+  PixelWindow window_;    // of the film at work
   PathWavefront::Counts job_counts_;
   PathWavefront::Counts counts_;
 };
