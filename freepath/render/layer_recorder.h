@@ -18,7 +18,9 @@ class LayerRecorder {
     samples_.assign(film.layers().has_any(kPathLayers) ? samples : 0, LayerSample{});
   }
   bool on() const { return !samples_.empty(); }
-  const LayerSample& operator[](std::size_t sample) const { return on() ? samples_[sample] : none_; }
+  const LayerSample& operator[](std::size_t sample) const {
+    return on() ? samples_[sample] : none_;
+  }
 
   /// A path is about to scatter.
   /// @param scatterings so far

@@ -123,8 +123,8 @@ class PathWavefront {
   FlightStream shadow_flights_;
   std::vector<ShadowPath> shadows_;
   std::vector<PathSample> results_;
-  LayerRecorder layers_;  // of the results
-  PixelWindow window_;    // of the film at work
+  LayerRecorder layers_;            // of the results
+  PixelWindow window_;              // of the film at work
   const Walker* walker_ = nullptr;  // of the channel at work
   Counts job_counts_;
   Counts counts_;

@@ -27,8 +27,12 @@ PixelWindow pixel_window(const std::optional<Crop>& crop, int width, int height)
   if (!(x0 < x1 && y0 < y1)) {
     fail("the crop from {},{} to before {},{} has no pixel", x0, y0, x1, y1);
   }
-  return {static_cast<int>(x0),      static_cast<int>(y0), static_cast<int>(x1 - x0),
-          static_cast<int>(y1 - y0), width,                height};
+  return {static_cast<int>(x0),
+          static_cast<int>(y0),
+          static_cast<int>(x1 - x0),
+          static_cast<int>(y1 - y0),
+          width,
+          height};
 }
 
 }  // namespace freepath

@@ -8,8 +8,8 @@ namespace freepath {
 
 /// A rectangle of pixels in a picture; row 0 is the top.
 struct PixelWindow {
-  int x = 0, y = 0;            ///< Of its first pixel in the picture.
-  int width = 0, height = 0;   ///< Its own.
+  int x = 0, y = 0;                     ///< Of its first pixel in the picture.
+  int width = 0, height = 0;            ///< Its own.
   int full_width = 0, full_height = 0;  ///< Of the picture.
 
   static constexpr PixelWindow whole(int width, int height) {

@@ -39,8 +39,7 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
     fail("nothing to render: neither samples nor a time limit is given");
   }
   const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
-  RenderResult result{
-      .film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
+  RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
   const PathSetup setup = make_setup(medium, camera, lights, settings);
   PassRenderer<PathWavefront> passes([&] { return PathWavefront(setup); }, settings, progress,
                                      result.film);
