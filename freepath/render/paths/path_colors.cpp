@@ -56,6 +56,10 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, const WalkSet
       depends_on_sample_ = true;
     }
   }
+  sees_rgb_ = mode == ColorMode::kSpectral && paths_per_sample_ == 1 &&
+              std::all_of(scene.media.begin(), scene.media.end(), [&](const SceneMedium& medium) {
+                return medium.is_grey(*scene.spectra);
+              });
   rgb_ = mode == ColorMode::kRgb
              ? make(first)
              : std::make_shared<const PathColors>(PathColors{scene.spectra->in_rgb(), {}});

@@ -40,8 +40,11 @@ class ColorFactory {
   int paths_per_sample() const { return paths_per_sample_; }
   /// Whether samples differ in walkers, so that flights of different samples are walked apart.
   bool depends_on_sample() const { return depends_on_sample_; }
-  /// R, G, B of the scene's spectra, for pictures of albedo.
+  /// R, G, B of the scene's spectra.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
+  /// Whether paths without colour may see lights in R, G, B: wavelengths are rendered, and no
+  /// medium tells them apart.
+  bool sees_rgb() const { return sees_rgb_; }
 
  private:
   std::shared_ptr<const MediumWalkers> make_walkers(std::size_t medium,
@@ -54,6 +57,7 @@ class ColorFactory {
   WalkSettings walk_;
   int paths_per_sample_ = 1;
   bool depends_on_sample_ = false;
+  bool sees_rgb_ = false;
   /// Walkers of media that are the same at all wavelengths, null of others.
   std::vector<std::shared_ptr<const MediumWalkers>> constant_;
   std::shared_ptr<const PathColors> rgb_;

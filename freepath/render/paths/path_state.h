@@ -26,6 +26,9 @@ struct ScenePath {
   Channels throughput;
   Channels density{1.0F};  ///< FlightStream::density of the flights so far.
   Channels radiance;
+  /// The part of the radiance that is known in R, G, B: what a throughput without colour brings of
+  /// lights, whose integral over all wavelengths is known.
+  Channels rgb;
 
   Vec3f scattered_from;  ///< Where the direction was drawn.
   float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.

@@ -204,16 +204,26 @@ void SceneWavefront::take_flight(std::size_t slot, const Walker& walker, std::si
   }
 }
 
+bool SceneWavefront::sees_rgb(const ScenePath& path) const {
+  const Channels& c = path.throughput;
+  return setup_.factory->sees_rgb() && c == Channels(c[0]);
+}
+
+const SpectrumValues& SceneWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
+  return in_rgb ? setup_.factory->rgb() : path.colors->spectra;
+}
+
 void SceneWavefront::escape(ScenePath& path) const {
   path.is_dead = true;
   if (path.scatterings == 0) {
     path.sample.alpha = 1 - mean(path.throughput, path.colors->spectra.channels());
   }
+  const bool in_rgb = sees_rgb(path);
   const LightSeen light =
-      scene_.lights->escape(path.scattered_from, path.direction, path.colors->spectra);
+      scene_.lights->escape(path.scattered_from, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-  path.radiance += path.throughput * light.radiance * share;
+  (in_rgb ? path.rgb : path.radiance) += path.throughput * light.radiance * share;
 }
 
 void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
@@ -235,14 +245,15 @@ void SceneWavefront::meet_surface(std::size_t slot) {
   const SurfaceHit& hit = *path.hit;
   const PathShape& shape = scene_.shapes[hit.point.shape];
   if (shape.light) {
+    const bool in_rgb = sees_rgb(path);
+    const SpectrumValues& spectra = light_spectra(path, in_rgb);
     const LightSeen light =
         path.pdf > 0
-            ? scene_.lights->hit(path.scattered_from, *shape.light, hit.point, path.colors->spectra)
-            : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction,
-                                               path.colors->spectra),
+            ? scene_.lights->hit(path.scattered_from, *shape.light, hit.point, spectra)
+            : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction, spectra),
                         0};
     const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-    path.radiance += path.throughput * light.radiance * share;
+    (in_rgb ? path.rgb : path.radiance) += path.throughput * light.radiance * share;
   }
   if (!shape.material) {
     const SurfaceHit crossed = hit;  // which goes with the ray
@@ -298,7 +309,7 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
         shadows_.add(static_cast<uint32_t>(slot),
                      scene_.surfaces->offset_ray_origin(hit.point, light.direction),
                      light.direction, light.distance * kShadowLength, side(light.direction),
-                     radiance);
+                     radiance, false);
       }
     }
   }
@@ -334,7 +345,9 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
     const float u0 = random.uniform();
     const float u1 = random.uniform();
     const float u2 = random.uniform();
-    const LightDraw light = scene_.lights->sample(position, path.colors->spectra, u0, u1, u2);
+    const bool in_rgb = sees_rgb(path);
+    const LightDraw light =
+        scene_.lights->sample(position, light_spectra(path, in_rgb), u0, u1, u2);
     if (light.pdf > 0) {
       // The phase function is its own density.
       const float value = phase.evaluate(path.direction, light.direction);
@@ -342,7 +355,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
       const Channels radiance = path.throughput * light.radiance * share;
       if (!is_black(radiance)) {
         shadows_.add(static_cast<uint32_t>(slot), position, light.direction,
-                     light.distance * kShadowLength, path.medium, radiance);
+                     light.distance * kShadowLength, path.medium, radiance, in_rgb);
       }
     }
   }
@@ -364,12 +377,13 @@ void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albe
 void SceneWavefront::finish(ScenePath& path) {
   PathSample& sample = results_[path.result];
   sample.lookups += static_cast<float>(path.lookups);
-  if (!is_finite(path.radiance)) {
+  if (!is_finite(path.radiance) || !is_finite(path.rgb)) {
     ++job_counts_.overflows;
     return;
   }
-  sample.radiance +=
-      to_spectrum(path.colors->spectra.to_rgb(path.radiance) * scene_.exposure_scale);
+  const Vec3f rgb =
+      path.colors->spectra.to_rgb(path.radiance) + Vec3f(path.rgb[0], path.rgb[1], path.rgb[2]);
+  sample.radiance += to_spectrum(rgb * scene_.exposure_scale);
   const auto share = 1.0F / static_cast<float>(setup_.factory->paths_per_sample());
   sample.alpha += path.sample.alpha * share;
   sample.albedo += path.sample.albedo * share;

@@ -53,6 +53,9 @@ class SceneWavefront {
   bool needs_surfaces_first(const ScenePath& path) const;
   void find_surface(ScenePath& path) const;
 
+  /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
+  bool sees_rgb(const ScenePath& path) const;
+  const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
   void escape(ScenePath& path) const;
   void meet_surface(std::size_t slot);
   void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
