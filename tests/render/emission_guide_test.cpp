@@ -57,7 +57,7 @@ BoundMedium make_bound(const std::shared_ptr<const Field>& density) {
 struct Fixture {
   std::shared_ptr<const Field> density =
       testing::make_field(Vec3i(0), Vec3i(23, 19, 17), lumps, crooked());
-  EmissionGuide guide{make_bound(density), kOrigin, 16};
+  EmissionGuide guide{make_bound(density), kOrigin};
 
   Vec3f at(const Vec3d& index) const { return Vec3f(index * crooked() - kOrigin); }
   std::vector<Vec3f> positions() const {
@@ -162,12 +162,12 @@ TEST(EmissionGuide, ReachesAllThatEmits) {
     index = index * Vec3d(26, 22, 20) - Vec3d(1);
     if (fixture.density->voxels.interpolate(index) <= 1e-4) continue;
     ++glowing;
-    const Vec3f place = apply(cells.world_to_grid, fixture.at(index));
+    const Vec3f place = apply(cells.emitters.world_to_grid, fixture.at(index));
     Vec3i cell;
     for (int axis = 0; axis < 3; ++axis) {
-      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.counts[axis] - 1);
+      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.emitters.counts[axis] - 1);
     }
-    ASSERT_GT(cells.power[cells.index(cell)], 0);
+    ASSERT_GT(cells.power[cells.emitters.index(cell)], 0);
   }
   EXPECT_GT(glowing, 10'000);
 }
@@ -203,7 +203,7 @@ TEST(EmissionGuide, FollowsTemperature) {
     radiance = {temperature, std::make_shared<const std::vector<float>>(
                                  std::vector<float>{0, 0, 0, 0, 0, 1}), 0, 0.2F};
   }
-  const EmissionGuide guide(bound, kOrigin, 16);
+  const EmissionGuide guide(bound, kOrigin);
   RandomStream random(2, 2, 2, 2);
   const Vec3f far((Vec3d(15, 8, 8) * crooked()) - kOrigin);
   const Vec3f edge((Vec3d(5.2, 8, 8) * crooked()) - kOrigin);

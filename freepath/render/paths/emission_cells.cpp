@@ -16,10 +16,13 @@ namespace freepath {
 namespace {
 
 /// Points along each axis of a cell at which emission is evaluated.
-constexpr int kPoints = 3;
+constexpr int kPoints = 5;
 
 /// What a cell has at least of the most that it could emit: the points may have missed it.
 constexpr float kLeastShare = 0.01F;
+
+/// Of the grid in which the box around all that can emit is sought.
+constexpr int kCellsOfSearch = 32 * 32 * 32;
 
 /// How far rounding may move a place [voxels].
 constexpr double kSlack = 1e-2;
@@ -148,6 +151,7 @@ class Emitter {
                  grid_to_walk * to_matrix(bound.medium->walk_to_component(component)),
                  grid_to_world) {
     for (int c = 0; c < count_; ++c) {
+      emits_ = emits_ || factor(c) > 0;
       const Field* const field = channels_.radiance[c].field.get();
       if (field == nullptr || factor(c) == 0) continue;
       if (c > 0 && field == channels_.radiance[c - 1].field.get() && radiance_[c - 1]) {
@@ -159,14 +163,16 @@ class Emitter {
     }
   }
 
-  bool emits() const {
-    float sum = 0;
-    for (int c = 0; c < count_; ++c) sum += factor(c);
-    return sum > 0;
+  /// Mean over the channels [1/m].
+  double extinction(const Vec3d& point) const {
+    double sum = 0;
+    for (int c = 0; c < count_; ++c) sum += channels_.sigma_a[c] + channels_.sigma_s[c];
+    return density_.at(point) * sum / count_;
   }
 
   /// Mean over the channels [radiance/m].
   double at(const Vec3d& point) const {
+    if (!emits_) return 0;
     const double density = density_.at(point);
     if (!(density > 0)) return 0;
     double sum = 0;
@@ -183,6 +189,7 @@ class Emitter {
 
   /// No point of the box emits more.
   double bound(const Box3d& box) const {
+    if (!emits_) return 0;
     const double density = density_.range(box).maximum;
     if (!(density > 0)) return 0;
     double sum = 0;
@@ -200,81 +207,148 @@ class Emitter {
 
   const ComponentChannels& channels_;
   int count_;
+  bool emits_ = false;
   PlacedField density_;
   std::array<std::shared_ptr<const PlacedField>, kMaxChannels> radiance_;  // null: 1
 };
 
-float estimate_cell(std::span<const Emitter> emitters, const Vec3i& cell) {
-  const Vec3d low(cell);
-  const Box3d box(low, low + Vec3d(1));
-  double bound = 0;
-  for (const Emitter& emitter : emitters) bound += emitter.bound(box);
-  if (!(bound > 0)) return 0;
+/// The middles of as many equal parts of a cell.
+template <class Function>
+double mean_over_cell(const Vec3i& cell, const Function& function) {
   double sum = 0;
   for (int i = 0; i < kPoints * kPoints * kPoints; ++i) {
     const Vec3d place(i / (kPoints * kPoints), i / kPoints % kPoints, i % kPoints);
-    const Vec3d point = low + (place + Vec3d(0.5)) / kPoints;
-    for (const Emitter& emitter : emitters) sum += emitter.at(point);
+    sum += function(Vec3d(cell) + (place + Vec3d(0.5)) / kPoints);
   }
-  return static_cast<float>(std::max(sum / (kPoints * kPoints * kPoints), kLeastShare * bound));
+  return sum / (kPoints * kPoints * kPoints);
 }
 
-/// Cells as near to cubes of the world as they can be.
-Vec3i choose_counts(const Medium& medium, const Vec3d& size, const Matrix4d& walk_to_world,
-                    int resolution) {
-  Vec3d edges;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double* const row = walk_to_world[axis];
-    edges[axis] = size[axis] * Vec3d(row[0], row[1], row[2]).length();
+double bound_of(std::span<const Emitter> emitters, const Vec3i& cell) {
+  double bound = 0;
+  for (const Emitter& emitter : emitters) {
+    bound += emitter.bound({Vec3d(cell), Vec3d(cell + Vec3i(1))});
   }
-  const double longest = std::max({edges.x, edges.y, edges.z});
-  const bool computed = medium.components()[0].density->function != nullptr;
-  Vec3i counts;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double voxels = std::ceil(size[axis] * medium.super_voxels().cell_size);
-    const double wanted = std::ceil(edges[axis] / longest * resolution - 1e-3);
-    counts[axis] = static_cast<int>(std::max(1.0, computed ? wanted : std::min(wanted, voxels)));
-  }
-  return counts;
+  return bound;
 }
+
+/// Calls a function for every cell, on all threads.
+template <class Function>
+void for_each_cell(const CellGrid& grid, const Function& function) {
+  tbb::parallel_for(std::size_t{0}, grid.size(), [&](std::size_t i) { function(i, grid.cell(i)); });
+}
+
+/// What grids of a medium are made from.
+struct GridMaker {
+  const BoundMedium& bound;
+  Matrix4d walk_to_world;  // relative to the origin
+  Matrix4d from_origin;
+
+  Matrix4d grid_to_walk(const Box3d& box, const Vec3i& counts) const {
+    Matrix4d matrix;
+    matrix.setScale(box.size() / Vec3d(counts));
+    for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = box.min[axis];
+    return matrix;
+  }
+
+  CellGrid make(const Box3d& box, const Vec3i& counts) const {
+    const Matrix4d grid_to_world = grid_to_walk(box, counts) * walk_to_world;
+    return {to_map(grid_to_world.inverse()), to_map(grid_to_world), counts};
+  }
+
+  std::vector<Emitter> emitters(const Box3d& box, const Vec3i& counts) const {
+    std::vector<Emitter> result;
+    const Matrix4d to_walk = grid_to_walk(box, counts);
+    for (std::size_t k = 0; k < bound.channels.components.size(); ++k) {
+      result.emplace_back(bound, k, to_walk, to_walk * walk_to_world * from_origin);
+    }
+    return result;
+  }
+
+  /// Cells as near to cubes of the world as they can be.
+  Vec3i choose_counts(const Box3d& box, int most_cells) const {
+    const Medium& medium = *bound.medium;
+    const Vec3d size = box.size();
+    Vec3d edges;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double* const row = walk_to_world[axis];
+      edges[axis] = size[axis] * Vec3d(row[0], row[1], row[2]).length();
+    }
+    const double longest = std::max({edges.x, edges.y, edges.z});
+    const bool computed = medium.components()[0].density->function != nullptr;
+    Vec3i counts(1);
+    for (int resolution = 1; resolution <= most_cells; ++resolution) {
+      Vec3i finer;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double voxels = std::ceil(size[axis] * medium.super_voxels().cell_size);
+        const double wanted = std::ceil(edges[axis] / longest * resolution - 1e-3);
+        finer[axis] =
+            static_cast<int>(std::max(1.0, computed ? wanted : std::min(wanted, voxels)));
+      }
+      if (static_cast<double>(finer.x) * finer.y * finer.z > most_cells) break;
+      counts = finer;
+    }
+    return counts;
+  }
+
+  /// The part of a box that can emit, to within a cell; empty if nothing can.
+  Box3d emitting_part(const Box3d& box) const {
+    const Vec3i counts = choose_counts(box, kCellsOfSearch);
+    const std::vector<Emitter> all = emitters(box, counts);
+    const CellGrid grid = make(box, counts);
+    std::vector<char> emits(grid.size());
+    for_each_cell(grid, [&](std::size_t i, const Vec3i& cell) {
+      emits[i] = static_cast<char>(bound_of(all, cell) > 0);
+    });
+    Box3d cells;
+    for (std::size_t i = 0; i < emits.size(); ++i) {
+      if (emits[i] == 0) continue;
+      cells.extendBy(Vec3d(grid.cell(i)));
+      cells.extendBy(Vec3d(grid.cell(i) + Vec3i(1)));
+    }
+    return cells.isEmpty() ? cells : transformed(cells, grid_to_walk(box, counts));
+  }
+};
 
 }  // namespace
 
-double EmissionCells::cell_volume() const {
-  return std::abs(to_matrix(grid_to_world).determinant());
-}
+double CellGrid::cell_volume() const { return std::abs(to_matrix(grid_to_world).determinant()); }
 
-EmissionCells estimate_emission(const BoundMedium& bound, const Vec3d& origin, int resolution) {
+EmissionCells estimate_emission(const BoundMedium& bound, const Vec3d& origin, int most_cells) {
   EmissionCells cells;
   const Medium& medium = *bound.medium;
   const Matrix4d world_to_walk = to_matrix(medium.world_to_walk(origin));
   const double determinant = world_to_walk.determinant();
   if (!bound.channels.emits() || determinant == 0 || !std::isfinite(1 / determinant)) return cells;
-  const Matrix4d walk_to_world = world_to_walk.inverse();
+  GridMaker maker{bound, world_to_walk.inverse(), Matrix4d()};
+  maker.from_origin.setTranslation(origin);
   const Box3f walk_box = medium.walk_bounds(Interpolation::kTrilinear);
-  const Vec3d size(walk_box.size());
-  const Vec3i counts = choose_counts(medium, size, walk_to_world, resolution);
-  Matrix4d grid_to_walk;
-  grid_to_walk.setScale(size / Vec3d(counts));
-  for (int axis = 0; axis < 3; ++axis) grid_to_walk[3][axis] = walk_box.min[axis];
-  const Matrix4d grid_to_world = grid_to_walk * walk_to_world;
-  cells.grid_to_world = to_map(grid_to_world);
-  cells.world_to_grid = to_map(grid_to_world.inverse());
+  const Box3d whole(Vec3d(walk_box.min), Vec3d(walk_box.max));
+  const Box3d glowing = maker.emitting_part(whole);
+  if (glowing.isEmpty()) return cells;
 
-  std::vector<Emitter> emitters;
-  Matrix4d from_origin;
-  from_origin.setTranslation(origin);
-  for (std::size_t k = 0; k < bound.channels.components.size(); ++k) {
-    emitters.emplace_back(bound, k, grid_to_walk, grid_to_world * from_origin);
-    if (!emitters.back().emits()) emitters.pop_back();
-  }
-  cells.counts = counts;
-  cells.power.resize(static_cast<std::size_t>(counts.x) * counts.y * counts.z);
-  tbb::parallel_for(0, counts.x * counts.y, [&](int row) {
-    for (int z = 0; z < counts.z; ++z) {
-      const Vec3i cell(row / counts.y, row % counts.y, z);
-      cells.power[cells.index(cell)] = estimate_cell(emitters, cell);
-    }
+  cells.emitters = maker.make(glowing, maker.choose_counts(glowing, most_cells));
+  const auto emitters = maker.emitters(glowing, cells.emitters.counts);
+  cells.power.resize(cells.emitters.size());
+  for_each_cell(cells.emitters, [&](std::size_t i, const Vec3i& cell) {
+    const double most = bound_of(emitters, cell);
+    if (!(most > 0)) return;
+    const double mean = mean_over_cell(cell, [&](const Vec3d& point) {
+      double sum = 0;
+      for (const Emitter& emitter : emitters) sum += emitter.at(point);
+      return sum;
+    });
+    cells.power[i] = static_cast<float>(std::max(mean, kLeastShare * most));
+  });
+
+  cells.receivers = maker.make(whole, maker.choose_counts(whole, most_cells));
+  const auto absorbers = maker.emitters(whole, cells.receivers.counts);
+  cells.extinction.resize(cells.receivers.size());
+  for_each_cell(cells.receivers, [&](std::size_t i, const Vec3i& cell) {
+    cells.extinction[i] = static_cast<float>(mean_over_cell(cell, [&](const Vec3d& point) {
+      double sum = 0;
+      for (const Emitter& absorber : absorbers) sum += absorber.extinction(point);
+      return sum;
+    }));
   });
   return cells;
 }

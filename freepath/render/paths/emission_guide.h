@@ -19,16 +19,23 @@ struct GuideSample {
 };
 
 /// Draws directions towards points of an emissive medium, for what a whole line through it emits
-/// [Simon17]: a cell of a grid by what it emits, then a point uniform in the cell. The density of a
-/// direction is that of all points along it. Positions are relative to the origin. Immutable, so
-/// threads share it.
+/// [Simon17]: a cell of a grid, then a point uniform in the cell. The density of a direction is that
+/// of all points along it.
+///
+/// How probable a cell is depends on where one looks from, by a table over the parts of the medium:
+/// it is what the cell emits, over the square of the distance, times a rough estimate of the
+/// transmittance. A line collects emission without regard to the distance, but the more points a
+/// solid angle holds the farther they are.
+///
+/// Positions are relative to the origin. Immutable, so threads share it.
 class EmissionGuide {
  public:
-  static constexpr int kResolution = 32;  ///< Cells along the longest edge of a medium.
+  /// Cells of either side of the table: it has 12 bytes for each pair.
+  static constexpr int kMostCells = 512;
 
   /// @param origin that positions are relative to [world]
-  EmissionGuide(const BoundMedium& bound, const Vec3d& origin, int resolution = kResolution)
-      : EmissionGuide(estimate_emission(bound, origin, resolution)) {}
+  EmissionGuide(const BoundMedium& bound, const Vec3d& origin, int most_cells = kMostCells)
+      : EmissionGuide(estimate_emission(bound, origin, most_cells)) {}
   explicit EmissionGuide(EmissionCells cells);
 
   /// Mean emission times volume, about [radiance · m²]; 0 where there is nothing to draw.
@@ -44,13 +51,16 @@ class EmissionGuide {
   const EmissionCells& cells() const { return cells_; }
 
  private:
+  void fill_row(std::size_t row);
+  /// Of a position: that of its receiver, or the last.
+  std::size_t row_of(const Vec3f& position) const;
+  float pdf(std::size_t row, const Vec3f& position, const Vec3f& direction) const;
+
   EmissionCells cells_;
   double power_ = 0;
-  /// Probability of a cell over its volume, divided by 3 [1/m³].
-  std::vector<float> density_;
-  std::vector<uint32_t> occupied_;  ///< Cells that emit.
-  std::vector<AliasEntry> table_;   ///< Of occupied_.
-  Vec3i first_{0}, last_{-1};       ///< Bounds of the cells that emit, inclusive.
+  // Rows of emitters, one for each receiver and one for positions beyond them.
+  std::vector<float> density_;     ///< Probability over volume, divided by 3 [1/m³].
+  std::vector<AliasEntry> table_;
 };
 
 }  // namespace freepath
