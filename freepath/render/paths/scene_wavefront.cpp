@@ -35,7 +35,8 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
       scene_(*setup.scene),
       paths_(setup.slots),
       batches_(setup.slots, true),
-      shadows_(*setup.scene, setup.slots) {}
+      shadows_(*setup.scene, setup.slots),
+      emissions_(*setup.scene, setup.slots) {}
 
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples, PathSample{});
@@ -50,6 +51,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
     if (stop && stop()) return false;
     fly();
     shadows_.trace(paths_, job_counts_.shadow_rays);
+    emissions_.trace(paths_, job_counts_.free_paths);
     for (std::size_t slot = 0; slot < active_;) {
       if (!paths_[slot].is_dead) {
         ++slot;
@@ -172,13 +174,13 @@ void SceneWavefront::take_flight(std::size_t slot, const Walker& walker, std::si
   const int channels = walker.channels();
   if (weighted) {
     for (int c = 0; c < channels; ++c) {
-      path.radiance[c] += flights_.emitted[c][i];
+      path.radiance[c] += flights_.emitted[c][i] * path.emission_share;
       path.throughput[c] = flights_.weight[c][i];
       path.density[c] = flights_.density[c][i];
     }
   } else {
     // A walker of one channel serves all, or the only one that there is.
-    path.radiance += path.throughput * flights_.emitted[0][i];
+    path.radiance += path.throughput * (flights_.emitted[0][i] * path.emission_share);
     path.throughput *= flights_.weight[0][i];
   }
   if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
@@ -231,6 +233,7 @@ void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& di
   path.direction = direction;
   path.hit.reset();
   path.surfaces_known = false;
+  path.emission_share = 1;
   ++path.flights;
 }
 
@@ -359,12 +362,29 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
       }
     }
   }
+  const EmissionGuide* const guide = guide_of(path.medium);
+  if (guide != nullptr) draw_emission(slot, *guide, position, phase, random);
   const float u1 = random.uniform();
   const float u2 = random.uniform();
   const PhaseSample next = phase.sample(path.direction, u1, u2);
   path.pdf = next.pdf;
   path.scattered_from = position;
   go_on(path, position, next.direction);
+  if (guide != nullptr) {
+    path.emission_share = next.pdf / (next.pdf + guide->pdf(position, next.direction));
+  }
+}
+
+void SceneWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
+                                   const Vec3f& position, const PhaseFunction& phase,
+                                   RandomStream& random) {
+  const ScenePath& path = paths_[slot];
+  const auto drawn = guide.sample(position, random);
+  if (!drawn || !(drawn->pdf > 0)) return;
+  // The phase function is its own density; the balance heuristic leaves this of f / pdf.
+  const float value = phase.evaluate(path.direction, drawn->direction);
+  emissions_.add(static_cast<uint32_t>(slot), path, position, drawn->direction,
+                 path.throughput * (value / (value + drawn->pdf)));
 }
 
 void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albedo,
