@@ -59,6 +59,9 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   });
   settings.walk.tracker = grey ? "delta" : "spectral";
   if (!built.picture.tracker.empty()) settings.walk.tracker = built.picture.tracker;
+  if (!built.picture.transmittance.empty()) {
+    settings.walk.transmittance = built.picture.transmittance;
+  }
   return settings;
 }
 
