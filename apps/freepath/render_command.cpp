@@ -1,7 +1,6 @@
 // freepath render: a volume file in, pictures out.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/film_options.h"
 #include "apps/freepath/frames.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/render_pictures.h"
@@ -70,6 +70,7 @@ constexpr std::array kUpAxes{Choice<UpAxis>{"y", UpAxis::kY}, Choice<UpAxis>{"z"
 /// The options as they were typed; read_* turn them into what the library takes.
 struct Options {
   VolumeOptions volumes;
+  FilmOptions film;
   std::string stats, frames;
   std::vector<std::string> outputs;
   uint32_t samples = 0;
@@ -121,24 +122,10 @@ LightOptions read_lights(const Options& options) {
   return lights;
 }
 
-/// Refuses a picture that this machine's memory can't hold: it would end the program, or others.
-void check_memory(const PictureSize& size) {
-  constexpr double kBytesPerPixel = 170;  // sums of samples, and the picture made of them
-  constexpr double kGigabyte = 1e9;
-  const double needed = kBytesPerPixel * size.width * size.height;
-  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
-  if (needed > 0.8 * present) {
-    fail(
-        "--size: a picture of {}x{} needs {:.0f} GB of memory, and this machine has {:.0f} GB; "
-        "choose a smaller one",
-        size.width, size.height, needed / kGigabyte, present / kGigabyte);
-  }
-}
-
-CameraOptions read_camera(const Options& options) {
+CameraOptions read_camera(const Options& options, const FilmPlan& film) {
   CameraOptions camera;
   const PictureSize size = parse_size(options.size, "--size");
-  check_memory(size);
+  check_memory(pixel_window(film.crop, size.width, size.height), film);
   camera.width = size.width;
   camera.height = size.height;
   camera.fov = options.fov;
@@ -221,10 +208,8 @@ void run_scene(const CLI::App& command, const Options& options) {
   plan.stats = options.stats;
   plan.settings = read_settings(options);
   plan.exposure = options.exposure;
-  if (given("--size")) {
-    plan.size = parse_size(options.size, "--size");
-    check_memory(*plan.size);
-  }
+  plan.film = read_film_options(options.film);
+  if (given("--size")) plan.size = parse_size(options.size, "--size");
   if (given("--spp")) plan.samples = options.samples;
   if (given("--seed")) plan.seed = options.seed;
   if (given("--max-scatterings")) plan.max_scatterings = options.max_scatterings;
@@ -250,9 +235,11 @@ void run(const CLI::App& command, const Options& options) {
                                      .outputs = options.outputs,
                                      .stats = options.stats});
   const UpAxis up = parse_choice(options.up, "--up", kUpAxes);
+  const FilmPlan film = read_film_options(options.film);
   const RenderPlan plan{.settings = read_settings(options),
                         .volumes = read_volumes(options),
-                        .camera = read_camera(options),
+                        .film = film,
+                        .camera = read_camera(options, film),
                         .up = up,
                         .lights = make_lights(read_lights(options), up),
                         .super_voxel = options.super_voxel,
@@ -389,6 +376,7 @@ void add_render_command(CLI::App& program) {
           "scene, .pbrt")
       ->required();
   add_picture_options(*command, *options);
+  add_film_options(*command, options->film);
   add_volume_options(*command, options->volumes);
   add_light_options(*command, *options);
   add_method_options(*command, *options);

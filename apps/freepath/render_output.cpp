@@ -142,13 +142,17 @@ void print_counts(const std::string& method, const char* unit, const WalkStatist
 
 }  // namespace
 
-void write_outputs(const std::vector<std::string>& files, double exposure,
+void write_outputs(const std::vector<std::string>& files, const OutputPlan& plan,
                    const RenderResult& result, const RenderReport& report) {
-  Image image = result.film.to_image();
+  Image image = result.film.to_image(plan.film.written());
+  if (plan.film.denoiser) {
+    plan.film.denoiser->denoise(image, result.film.to_image({Layer::kAlbedo, Layer::kNormal}));
+  }
+  if (plan.display != nullptr) plan.display->show(image);
   add_metadata(image, result, report);
   for (const std::string& file : files) {
     if (image_format(file) == ImageFormat::kPng) {
-      write_png(file, image, exposure);
+      write_png(file, image, plan.exposure);
     } else {
       write_exr(file, image);
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/freepath/film_options.h"
 #include "freepath/render/renderer.h"
 
 namespace freepath::program {
@@ -39,9 +40,16 @@ struct RenderReport {
   std::optional<int> frame;  ///< Where the picture belongs to a sequence.
 };
 
-/// Writes the picture under each name, .exr with metadata.
-/// @throws Error as the image writers
-void write_outputs(const std::vector<std::string>& files, double exposure,
+/// What is made of a film.
+struct OutputPlan {
+  double exposure = 0;  ///< Of a .png [stops].
+  const FilmPlan& film;
+  TevDisplay* display = nullptr;  ///< Shows the picture as it is written; may be null.
+};
+
+/// Writes the picture under each name, .exr with layers and metadata.
+/// @throws Error as the denoiser and the image writers
+void write_outputs(const std::vector<std::string>& files, const OutputPlan& plan,
                    const RenderResult& result, const RenderReport& report);
 
 /// Checks, before the time is spent, that statistics could be written, and over neither a picture

@@ -62,16 +62,21 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   report.settings.walk.tracker = tracker;
   report.threads = plan.settings.threads;
   report.frame = files.frame;
-  const ProgressBar bar(std::size_t(camera.width()) * camera.height(), plan.settings.time_limit);
+  RenderSettings& settings = report.settings;
+  settings.layers = plan.film.recorded();
+  settings.crop = plan.film.crop;
+  const auto display = show_passes(plan.film, files.outputs.front(), settings);
+  const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
+  const ProgressBar bar(std::size_t(window.width) * window.height, settings.time_limit);
   RenderResult result =
-      render(medium, camera, plan.lights, report.settings, [&](const RenderProgress& progress) {
+      render(medium, camera, plan.lights, settings, [&](const RenderProgress& progress) {
         bar.show(progress);
         return !stop.requested();
       });
   bar.finish();
   check_not_empty(result);
   report.seconds_render = result.seconds;
-  write_outputs(files.outputs, plan.exposure, result, report);
+  write_outputs(files.outputs, {plan.exposure, plan.film, display.get()}, result, report);
   if (!files.stats.empty()) write_statistics(files.stats, result, report);
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "apps/freepath/film_options.h"
 #include "apps/freepath/frames.h"
 #include "apps/freepath/render_volumes.h"
 #include "freepath/scene/volume_scene.h"
@@ -13,6 +14,7 @@ namespace freepath::program {
 struct RenderPlan {
   RenderSettings settings;          ///< The seed, too, is the same for all frames.
   std::vector<VolumePlan> volumes;  ///< Each picture has files of its own for them.
+  FilmPlan film;
   CameraOptions camera;
   UpAxis up = UpAxis::kY;
   Lights lights;

@@ -55,6 +55,7 @@ RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
       plan.transmittance.value_or(picture.transmittance.empty() ? "ratio" : picture.transmittance);
   walk.transmittance =
       to_string(parse_method(walk.transmittance, transmittance_infos()), transmittance_infos());
+  settings.crop = plan.film.crop ? plan.film.crop : picture.crop;
   if (plan.interpolation) {
     walk.interpolation = *plan.interpolation;
   } else if (!picture.interpolation.empty()) {
@@ -99,9 +100,16 @@ void render_scene_file(const ScenePlan& plan) {
   report.seconds_load = watch.lap();
   warn_if_biased(report.settings.walk.tracker);
 
-  const StopOnInterrupt stop;
+  FilmPlan film = plan.film;
+  if (!film.layers && built.picture.all_layers) film.layers = LayerSet::all();
+  report.settings.layers = film.recorded();
   const SceneCamera& camera = *built.scene.camera;
-  const ProgressBar bar(std::size_t(camera.width()) * camera.height(), plan.settings.time_limit);
+  const PixelWindow window = pixel_window(report.settings.crop, camera.width(), camera.height());
+  check_memory(window, film);
+  const auto display = show_passes(film, outputs.front(), report.settings);
+
+  const StopOnInterrupt stop;
+  const ProgressBar bar(std::size_t(window.width) * window.height, plan.settings.time_limit);
   const RenderResult result =
       render_scene(built.scene, plan.color, report.settings, [&](const RenderProgress& progress) {
         bar.show(progress);
@@ -113,7 +121,7 @@ void render_scene_file(const ScenePlan& plan) {
          result.interrupted ? "interrupted" : "the time was up", result.seconds);
   }
   report.seconds_render = result.seconds;
-  write_outputs(outputs, plan.exposure, result, report);
+  write_outputs(outputs, {plan.exposure, film, display.get()}, result, report);
   if (!plan.stats.empty()) write_statistics(plan.stats, result, report);
   print_summary(outputs, result, report);
 }

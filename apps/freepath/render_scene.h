@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/freepath/film_options.h"
 #include "apps/freepath/parse.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/renderer.h"
@@ -26,6 +27,7 @@ struct ScenePlan {
   ColorMode color = ColorMode::kSpectral;
   RenderSettings settings;  ///< All else.
   double exposure = 0;
+  FilmPlan film;  ///< Its crop goes before the scene's.
 };
 
 /// Whether a file is a scene, by its name: *.pbrt or *.pbrt.gz.

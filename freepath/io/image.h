@@ -23,6 +23,9 @@ struct Image {
   std::vector<std::string> channels = {};  ///< Names: R, G, B, A, variance.R, ...
   std::vector<float> values = {};  ///< Interleaved: ((row · width) + column) · channels + channel
   std::vector<std::pair<std::string, MetadataValue>> metadata = {};  ///< In the order of writing.
+  /// Where it lies in a larger picture that it is a part of, and the size of that [pixels]; a size
+  /// of 0 is its own.
+  int x = 0, y = 0, full_width = 0, full_height = 0;
 
   std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
   /// The values of a pixel, one for each channel.

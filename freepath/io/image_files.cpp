@@ -157,6 +157,10 @@ Image read_image(const std::string& path) {
   Image image;
   image.width = spec.width;
   image.height = spec.height;
+  image.x = spec.x - spec.full_x;
+  image.y = spec.y - spec.full_y;
+  image.full_width = spec.full_width;
+  image.full_height = spec.full_height;
   image.channels = spec.channelnames;
   image.values.resize(image.pixel_count() * image.channels.size());
   image.metadata = metadata_of(spec);
@@ -206,6 +210,10 @@ void write_exr(const std::string& path, const Image& image, ExrPrecision precisi
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()),
                        half ? OIIO::TypeHalf : OIIO::TypeFloat);
   spec.channelnames = image.channels;
+  spec.x = image.x;
+  spec.y = image.y;
+  if (image.full_width > 0) spec.full_width = image.full_width;
+  if (image.full_height > 0) spec.full_height = image.full_height;
   spec.attribute("compression", "zip");
   set_metadata(spec, image);
   const AsideFile file(path);

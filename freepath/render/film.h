@@ -1,12 +1,15 @@
 #pragma once
 /// @file The film: what the paths of each pixel add up to.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "freepath/base/spectrum.h"
 #include "freepath/io/image.h"
+#include "freepath/render/layers.h"
+#include "freepath/render/pixel_window.h"
 
 namespace freepath {
 
@@ -20,6 +23,17 @@ struct PathSample {
   float lookups = 0;        ///< Look-ups of fields along the path.
 };
 
+/// What one path found for layers that few ask for (kPathLayers).
+struct LayerSample {
+  Spectrum normal{0.0F};         ///< Times depth_weight.
+  Spectrum position{0.0F};       ///< Times depth_weight [world].
+  Spectrum transmittance{0.0F};  ///< 0 of a path that ended in a medium.
+  // Parts of the radiance, each with the one before.
+  Spectrum background{0.0F};    ///< From outside, not scattered.
+  Spectrum unscattered{0.0F};   ///< From wherever, not scattered.
+  Spectrum at_most_once{0.0F};  ///< Scattered at most once.
+};
+
 /// Sums over the paths of each pixel, in double precision.
 ///
 /// A pixel's samples must be added in the order of their numbers, by one thread at a time;
@@ -28,17 +42,23 @@ struct PathSample {
 class Film {
  public:
   /// @throws Error for an empty film
-  Film(int width, int height);
+  explicit Film(const PixelWindow& window, LayerSet layers = LayerSet::standard());
+  Film(int width, int height) : Film(PixelWindow::whole(width, height)) {}
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return window_.width; }
+  int height() const { return window_.height; }
+  const PixelWindow& window() const { return window_; }
+  /// What it records, which takes memory.
+  LayerSet layers() const { return layers_; }
+  static std::size_t bytes_per_pixel(LayerSet layers);
 
   /// Adds the next sample of a pixel.
   ///
   /// A sample with a NaN or infinite part is counted, not added: whoever adds samples reports it
   /// as an internal error (non_finite_samples).
   /// @param pixel row · width + column
-  void add(std::size_t pixel, const PathSample& sample);
+  /// @param layer_sample looked at only where one of kPathLayers is recorded; has to be finite
+  void add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample = {});
 
   /// Samples of a pixel that were added.
   uint32_t samples(std::size_t pixel) const { return pixels_[pixel].samples; }
@@ -56,13 +76,17 @@ class Film {
   };
   NonFinite non_finite_samples() const;
 
-  /// The picture: R, G, B, A, albedo.{R,G,B}, depth.Z, lookups, variance.{R,G,B}.
+  /// The picture: R, G, B, A and the layers (layer_infos()).
   ///
   /// A is 1 - transmittance. depth.Z is the mean distance to the first scatter, 0 where no path
   /// scattered. lookups is their mean number for a path. variance is that of the mean,
   /// (E[x²] - E[x]²) / (n - 1); of a single sample x² stands in, which is not below the variance on
-  /// average. A pixel without samples is 0.
-  Image to_image() const;
+  /// average. normal is the mean over all paths, 0 for those without a first event; position is one
+  /// over first events. emission + background + direct + indirect is R, G, B, up to rounding. A and
+  /// B are means over the samples of even and odd number. A pixel without samples is 0.
+  Image to_image() const { return to_image(layers_); }
+  /// With these layers alone, of those that it has.
+  Image to_image(LayerSet layers) const;
 
  private:
   struct Pixel {
@@ -77,8 +101,29 @@ class Film {
     uint32_t non_finite = 0;
   };
 
-  int width_, height_;
+  /// Of three channels each, in sums_.
+  enum Sum { kNormal, kPosition, kTransmittance, kBackground, kUnscattered, kAtMostOnce, kEven };
+  static constexpr int kSums = 7;
+  /// Where a pixel has its sums; -1: nowhere.
+  using SumPlaces = std::array<int, kSums>;
+  static SumPlaces places_of(LayerSet layers, int& count);
+
+  void add_layers(std::size_t pixel, const LayerSample& sample);
+  /// Of a sum that has a place.
+  double* sums_of(std::size_t pixel, Sum which) {
+    return sums_.data() + pixel * sums_per_pixel_ + places_[which];
+  }
+  const double* sums_of(std::size_t pixel, Sum which) const {
+    return sums_.data() + pixel * sums_per_pixel_ + places_[which];
+  }
+  void put_layer(Layer layer, std::size_t pixel, std::vector<float>& values) const;
+
+  PixelWindow window_;
+  LayerSet layers_;
   std::vector<Pixel> pixels_;
+  int sums_per_pixel_ = 0;  // in doubles
+  SumPlaces places_{};
+  std::vector<double> sums_;
 };
 
 }  // namespace freepath

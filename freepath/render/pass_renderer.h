@@ -65,6 +65,7 @@ class PassRenderer {
       pass(samples);
       if (over_) break;
       samples_done_ += samples;
+      if (settings_.on_pass) settings_.on_pass(film_);
       const double now = seconds_since(start_);
       if (timed && now >= settings_.time_limit) break;
       samples = next_pass(samples, (now - before) / samples, timed, now);

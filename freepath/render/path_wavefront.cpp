@@ -69,6 +69,8 @@ PathWavefront::PathWavefront(const PathSetup& setup) : setup_(setup) {
 
 bool PathWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples, PathSample{});
+  layers_.begin(film, results_.size());
+  window_ = film.window();
   job_counts_ = {};
   const bool all_channels = setup_.walkers.size() == 1;
   for (std::size_t i = 0; i < setup_.walkers.size(); ++i) {
@@ -77,7 +79,7 @@ bool PathWavefront::trace(const PathJob& job, Film& film, const std::function<bo
     if (!trace_channel(job, channel, stop)) return false;
   }
   for (std::size_t i = 0; i < results_.size(); ++i) {
-    film.add(job.first_pixel + i / job.samples, results_[i]);
+    film.add(job.first_pixel + i / job.samples, results_[i], layers_[i]);
   }
   counts_.merge(job_counts_);
   return true;
@@ -121,7 +123,7 @@ bool PathWavefront::trace_channel(const PathJob& job, int channel,
 
 void PathWavefront::start_path(const PathJob& job, std::size_t number, std::size_t slot,
                                int channel) {
-  const std::size_t pixel = job.first_pixel + number / job.samples;
+  const std::size_t pixel = window_.in_picture(job.first_pixel + number / job.samples);
   const auto sample = job.first_sample + static_cast<uint32_t>(number % job.samples);
   // Each channel's path has random numbers of its own.
   const uint32_t sample_key =
@@ -182,7 +184,10 @@ bool PathWavefront::advance(std::size_t slot) {
   Path& path = paths_in_flight_[slot];
   path.lookups += flights_.lookups[slot];
   take_weights(path, slot);
-  if (path.bounce == 0) record_first_event(path, slot);
+  if (path.bounce == 0) {
+    record_first_event(path, slot);
+    if (layers_.on()) record_layers(path, slot);
+  }
   if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
     path.radiance = Spectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
     return false;
@@ -199,14 +204,17 @@ bool PathWavefront::advance(std::size_t slot) {
   return scatter(path, slot);
 }
 
-void PathWavefront::escape(Path& path, const Vec3f& direction) const {
+void PathWavefront::escape(Path& path, const Vec3f& direction) {
   const LightValue light = setup_.lights->evaluate(direction);
   // What next-event estimation could have found too is shared with it.
   const float share = path.bounce == 0 ? 1.0F : path.phase_pdf / (path.phase_pdf + light.pdf);
-  path.radiance += path.throughput * light.radiance * share;
+  const Spectrum seen = path.throughput * light.radiance * share;
+  if (layers_.on() && path.bounce == 0) layers_.background(path.result, seen);
+  path.radiance += seen;
 }
 
 bool PathWavefront::scatter(Path& path, std::size_t slot) {
+  if (layers_.on()) layers_.scattering(path.result, path.bounce, path.radiance);
   const uint32_t scattering = path.bounce++;
   if (path.bounce > setup_.max_scatterings) return false;
   RandomStream random(setup_.seed, rays_.pixel[slot], rays_.sample[slot],
@@ -270,6 +278,20 @@ void PathWavefront::record_first_event(Path& path, std::size_t slot) const {
   path.depth_weight = mean_albedo > 0 ? weight / mean_albedo : 1.0F;
 }
 
+void PathWavefront::record_layers(const Path& path, std::size_t slot) {
+  if (flights_.event[slot] == Event::kEscape) {
+    layers_.transmittance(path.result, path.throughput);
+    return;
+  }
+  const Vec3f direction(rays_.direction[0][slot], rays_.direction[1][slot],
+                        rays_.direction[2][slot]);
+  const Vec3f origin(rays_.origin[0][slot], rays_.origin[1][slot], rays_.origin[2][slot]);
+  const Vec3f position = origin + direction * path.depth + Vec3f(setup_.origin);
+  // A sample of several channels is the mean of their paths.
+  const float share = 1.0F / static_cast<float>(setup_.walkers.size());
+  layers_.event(path.result, -direction, position, path.depth_weight * share);
+}
+
 void PathWavefront::finish(const Path& path, int channel) {
   PathSample& sample = results_[path.result];
   sample.lookups += static_cast<float>(path.lookups);
@@ -279,6 +301,7 @@ void PathWavefront::finish(const Path& path, int channel) {
     return;
   }
   sample.radiance += path.radiance;
+  if (layers_.on()) layers_.end(path.result, path.bounce, path.radiance);
   if (channel < 0) {
     sample.alpha = path.alpha;
     sample.albedo = path.albedo;

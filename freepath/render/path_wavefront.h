@@ -10,6 +10,7 @@
 #include "freepath/media/phase/phase_function.h"
 #include "freepath/render/camera.h"
 #include "freepath/render/film.h"
+#include "freepath/render/layer_recorder.h"
 #include "freepath/render/lights.h"
 #include "freepath/transport/walker.h"
 
@@ -32,7 +33,7 @@ struct PathSetup {
   std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
 };
 
-/// A rectangle of work: `pixels` pixels from `first_pixel` on (row-major), samples
+/// A rectangle of work: `pixels` pixels of the film from `first_pixel` on (row-major), samples
 /// [first_sample, first_sample + samples) of each.
 struct PathJob {
   std::size_t first_pixel = 0;
@@ -103,11 +104,12 @@ class PathWavefront {
   void bring_weights(std::size_t active);
   /// Adds what a flight has collected, and weights the path with it.
   void take_weights(Path& path, std::size_t slot);
-  void escape(Path& path, const Vec3f& direction) const;
+  void escape(Path& path, const Vec3f& direction);
   bool scatter(Path& path, std::size_t slot);
   void sample_light(const Path& path, std::size_t slot, const Vec3f& position,
                     const Vec3f& direction, const PhaseFunction& phase, RandomStream& random);
   void record_first_event(Path& path, std::size_t slot) const;
+  void record_layers(const Path& path, std::size_t slot);
   void finish(const Path& path, int channel);
   void trace_shadows();
 
@@ -121,6 +123,8 @@ class PathWavefront {
   FlightStream shadow_flights_;
   std::vector<ShadowPath> shadows_;
   std::vector<PathSample> results_;
+  LayerRecorder layers_;            // of the results
+  PixelWindow window_;              // of the film at work
   const Walker* walker_ = nullptr;  // of the channel at work
   Counts job_counts_;
   Counts counts_;

@@ -38,8 +38,8 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
   }
-  RenderResult result{
-      .film = Film(camera.width(), camera.height()), .free_paths = {}, .shadow_rays = {}};
+  const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
+  RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
   const PathSetup setup = make_setup(medium, camera, lights, settings);
   PassRenderer<PathWavefront> passes([&] { return PathWavefront(setup); }, settings, progress,
                                      result.film);

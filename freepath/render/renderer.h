@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "freepath/render/path_wavefront.h"
 
@@ -17,6 +18,12 @@ struct RenderSettings {
   double time_limit = 0;
   int threads = 0;  ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
+  /// What the film records; path layers cost time, and all cost memory.
+  LayerSet layers = LayerSet::standard();
+  /// Renders a part alone, whose pixels are those of the whole picture.
+  std::optional<Crop> crop = {};
+  /// Called between passes, by the thread that renders, with what there is.
+  std::function<void(const Film&)> on_pass = {};
   std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
   WalkSettings walk;         ///< Its origin is chosen by the renderer: the middle of the medium.
 };

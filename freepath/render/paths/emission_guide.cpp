@@ -137,8 +137,8 @@ std::optional<GuideSample> EmissionGuide::sample(const Vec3f& position,
   const std::size_t row = row_of(position);
   const std::size_t size = cells_.emitters.size();
   const AliasEntry* const table = table_.data() + row * size;
-  auto cell = std::min(
-      static_cast<std::size_t>(random.uniform() * static_cast<float>(size)), size - 1);
+  auto cell =
+      std::min(static_cast<std::size_t>(random.uniform() * static_cast<float>(size)), size - 1);
   // What is left of that number is too coarse to decide.
   if (!(random.uniform() < table[cell].threshold)) cell = table[cell].alias;
   Vec3f point(cells_.emitters.cell(cell));

@@ -19,8 +19,8 @@ struct GuideSample {
 };
 
 /// Draws directions towards points of an emissive medium, for what a whole line through it emits
-/// [Simon17]: a cell of a grid, then a point uniform in the cell. The density of a direction is that
-/// of all points along it.
+/// [Simon17]: a cell of a grid, then a point uniform in the cell. The density of a direction is
+/// that of all points along it.
 ///
 /// How probable a cell is depends on where one looks from, by a table over the parts of the medium:
 /// it is what the cell emits, over the square of the distance, times a rough estimate of the
@@ -59,7 +59,7 @@ class EmissionGuide {
   EmissionCells cells_;
   double power_ = 0;
   // Rows of emitters, one for each receiver and one for positions beyond them.
-  std::vector<float> density_;     ///< Probability over volume, divided by 3 [1/m³].
+  std::vector<float> density_;  ///< Probability over volume, divided by 3 [1/m³].
   std::vector<AliasEntry> table_;
 };
 

@@ -22,9 +22,9 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
   }
-  RenderResult result{.film = Film(scene.camera->width(), scene.camera->height()),
-                      .free_paths = {},
-                      .shadow_rays = {}};
+  const PixelWindow window =
+      pixel_window(settings.crop, scene.camera->width(), scene.camera->height());
+  RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
   const ColorFactory factory(scene, mode, settings.walk);
   SceneSetup setup;
   setup.scene = &scene;

@@ -40,6 +40,8 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
 
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples, PathSample{});
+  layers_.begin(film, results_.size());
+  window_ = film.window();
   job_counts_ = {};
   const std::size_t total = job.pixels * job.samples * setup_.factory->paths_per_sample();
   job_counts_.paths = total;
@@ -62,7 +64,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
     }
   }
   for (std::size_t i = 0; i < results_.size(); ++i) {
-    film.add(job.first_pixel + i / job.samples, results_[i]);
+    film.add(job.first_pixel + i / job.samples, results_[i], layers_[i]);
   }
   counts_.merge(job_counts_);
   return true;
@@ -77,7 +79,7 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
   const std::size_t pixel = place % job.pixels;
   const auto sample = static_cast<uint32_t>(place / job.pixels);
   path.result = static_cast<uint32_t>(pixel * job.samples + sample);
-  path.pixel = static_cast<uint32_t>(job.first_pixel + pixel);
+  path.pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + pixel));
   const uint32_t sample_number = job.first_sample + sample;
   path.sample_key = sample_number * static_cast<uint32_t>(per_sample) + channel;
   path.colors = setup_.colors[sample_number - setup_.first_sample].get();
@@ -190,6 +192,7 @@ void SceneWavefront::take_flight(std::size_t slot, const Walker& walker, std::si
   }
   switch (flights_.event[i]) {
     case Event::kAbsorb:
+      if (path.scatterings == 0) path.sample.alpha = 1;
       path.is_dead = true;
       return;
     case Event::kScatter:
@@ -215,17 +218,26 @@ const SpectrumValues& SceneWavefront::light_spectra(const ScenePath& path, bool 
   return in_rgb ? setup_.factory->rgb() : path.colors->spectra;
 }
 
-void SceneWavefront::escape(ScenePath& path) const {
+void SceneWavefront::escape(ScenePath& path) {
   path.is_dead = true;
   if (path.scatterings == 0) {
-    path.sample.alpha = 1 - mean(path.throughput, path.colors->spectra.channels());
+    // A path of one channel is the only one to see its transmittance.
+    path.sample.alpha =
+        1 - (path.channel < 0 ? mean(path.throughput, path.colors->spectra.channels())
+                              : path.throughput[path.channel]);
+    if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
   }
   const bool in_rgb = sees_rgb(path);
   const LightSeen light =
       scene_.lights->escape(path.scattered_from, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-  (in_rgb ? path.rgb : path.radiance) += path.throughput * light.radiance * share;
+  const Channels seen = path.throughput * light.radiance * share;
+  if (layers_.on() && path.scatterings == 0) {
+    layers_.background(path.result,
+                       rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
+  }
+  (in_rgb ? path.rgb : path.radiance) += seen;
 }
 
 void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
@@ -281,10 +293,14 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
   const SurfaceHit hit = *path.hit;
   const PathShape& shape = scene_.shapes[hit.point.shape];
   const Material& material = scene_.materials[*shape.material];
+  if (layers_.on()) {
+    layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
+  }
   if (path.scatterings++ == 0) {
     const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
     record_event(path, hit.t, material.albedo(hit.point, path.direction, context),
                  hit.point.shading_normal);
+    if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
     path.sample.alpha = 1;
   }
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
@@ -332,6 +348,9 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
 void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
   ScenePath& path = paths_[slot];
   const SceneMedium& medium = scene_.media[path.medium];
+  if (layers_.on()) {
+    layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
+  }
   if (path.scatterings++ == 0) {
     record_event(path, t, medium.albedo(component, setup_.factory->rgb()), -path.direction);
     path.sample.alpha = 1;
@@ -388,10 +407,27 @@ void SceneWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
 }
 
 void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albedo,
-                                  const Vec3f& /*normal*/) const {
+                                  const Vec3f& normal) {
   path.sample.albedo = {albedo[0], albedo[1], albedo[2]};
   path.sample.depth = path.distance + t;
   path.sample.depth_weight = 1;
+  if (!layers_.on()) return;
+  const Vec3f position = path.origin + path.direction * t + Vec3f(scene_.origin);
+  layers_.event(path.result, normal, position,
+                1.0F / static_cast<float>(setup_.factory->paths_per_sample()));
+}
+
+Spectrum SceneWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
+                                const Channels& rgb) const {
+  const Vec3f sum = path.colors->spectra.to_rgb(radiance) + Vec3f(rgb[0], rgb[1], rgb[2]);
+  return to_spectrum(sum * scene_.exposure_scale);
+}
+
+Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
+  const SpectrumValues& spectra = path.colors->spectra;
+  const Channels& t = path.throughput;
+  if (spectra.channels() == kChannels) return {t[0], t[1], t[2]};
+  return to_spectrum(spectra.to_rgb(t * spectra.illuminant(Vec3f(1))));
 }
 
 void SceneWavefront::finish(ScenePath& path) {
@@ -401,9 +437,9 @@ void SceneWavefront::finish(ScenePath& path) {
     ++job_counts_.overflows;
     return;
   }
-  const Vec3f rgb =
-      path.colors->spectra.to_rgb(path.radiance) + Vec3f(path.rgb[0], path.rgb[1], path.rgb[2]);
-  sample.radiance += to_spectrum(rgb * scene_.exposure_scale);
+  const Spectrum radiance = rgb_of(path, path.radiance, path.rgb);
+  sample.radiance += radiance;
+  if (layers_.on()) layers_.end(path.result, path.scatterings, radiance);
   const auto share = 1.0F / static_cast<float>(setup_.factory->paths_per_sample());
   sample.alpha += path.sample.alpha * share;
   sample.albedo += path.sample.albedo * share;

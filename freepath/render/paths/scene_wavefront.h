@@ -8,6 +8,7 @@
 
 #include "freepath/base/random.h"
 #include "freepath/render/film.h"
+#include "freepath/render/layer_recorder.h"
 #include "freepath/render/path_wavefront.h"
 #include "freepath/render/paths/emission_tracer.h"
 #include "freepath/render/paths/path_colors.h"
@@ -59,7 +60,7 @@ class SceneWavefront {
   /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
   bool sees_rgb(const ScenePath& path) const;
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
-  void escape(ScenePath& path) const;
+  void escape(ScenePath& path);
   void meet_surface(std::size_t slot);
   void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
   void scatter_at_surface(std::size_t slot);
@@ -73,7 +74,10 @@ class SceneWavefront {
   /// @return false if the path has ended
   bool survives(ScenePath& path, RandomStream& random) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
-  void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal) const;
+  void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal);
+  /// R, G, B on the film of both parts of a radiance.
+  Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
+  Spectrum transmittance_of(const ScenePath& path) const;
   void finish(ScenePath& path);
 
   const SceneSetup& setup_;
@@ -85,6 +89,8 @@ class SceneWavefront {
   ShadowTracer shadows_;
   EmissionTracer emissions_;
   std::vector<PathSample> results_;
+  LayerRecorder layers_;  // of the results
+  PixelWindow window_;    // of the film at work
   PathWavefront::Counts job_counts_;
   PathWavefront::Counts counts_;
 };

@@ -51,6 +51,41 @@ std::optional<ScreenWindow> screen_window(const ParameterList& list) {
   return ScreenWindow{window[0], window[1], window[2], window[3]};
 }
 
+/// The part of a film that is rendered. pbrt's order is x0, x1, y0, y1.
+std::optional<Crop> read_crop(BuildContext& context, const ParameterList& list,
+                              const FilmSize& size) {
+  const std::span<const int> bounds = list.get_integers("pixelbounds");
+  const std::span<const double> window = list.get_floats("cropwindow");
+  if (bounds.empty() && window.empty()) return {};
+  const std::string_view name = bounds.empty() ? "cropwindow" : "pixelbounds";
+  const SourceLocation where = list.location_of(name);
+  if (!bounds.empty() && !window.empty()) {
+    context.diagnostics.warn(where, "'cropwindow' is left out, since there is 'pixelbounds'");
+  }
+  if (std::max(bounds.size(), window.size()) != 4) {
+    fail_at(where, "'{}' needs x0, x1, y0, y1", name);
+  }
+  Crop crop{.fractions = true};
+  if (bounds.empty()) {
+    crop = {window[0], window[2], window[1], window[3], true};
+  } else {
+    const double x = 1.0 / size.width;
+    const double y = 1.0 / size.height;
+    crop = {bounds[0] * x, bounds[2] * y, bounds[1] * x, bounds[3] * y, true};
+  }
+  const Crop given = crop;
+  for (double* const value : {&crop.x0, &crop.y0, &crop.x1, &crop.y1}) {
+    *value = std::clamp(*value, 0.0, 1.0);
+  }
+  if (crop.x0 != given.x0 || crop.y0 != given.y0 || crop.x1 != given.x1 || crop.y1 != given.y1) {
+    context.diagnostics.warn(where, fmt::format("'{}' reaches beyond the film: what is on it is "
+                                                "rendered",
+                                                name));
+  }
+  at_location(where, [&] { return pixel_window(crop, size.width, size.height); });
+  return crop;
+}
+
 void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) {
   if (!context.pbrt.film) return;
   const PbrtEntity& film = *context.pbrt.film;
@@ -91,8 +126,8 @@ void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) 
   }
   warn_if_given(context, list, "maxcomponentvalue",
                 "is left out: to clip samples would bias the picture");
-  warn_if_given(context, list, "cropwindow", "is left out: the whole picture is rendered");
-  warn_if_given(context, list, "pixelbounds", "is left out: the whole picture is rendered");
+  picture.all_layers = film.type == "gbuffer";
+  picture.crop = read_crop(context, list, size);
   pass_over(list, {"diagonal", "savefp16", "coordinatesystem"});
   list.report_unused(context.diagnostics);
 }

@@ -1,0 +1,146 @@
+#include "apps/freepath/denoiser.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "freepath/base/error.h"
+
+namespace freepath::program {
+namespace {
+
+constexpr int kCpuDevice = 1;  // whose images may be any memory
+constexpr int kFloat3 = 3;
+constexpr int kRgb = 3;
+
+/// Three channels of an image, packed.
+std::vector<float> packed(const Image& image, const std::array<const char*, kRgb>& names,
+                          float low, float high) {
+  std::array<int, kRgb> channels{};
+  for (int c = 0; c < kRgb; ++c) channels[c] = find_channel(image, names[c]).value();
+  std::vector<float> values;
+  values.reserve(image.pixel_count() * kRgb);
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
+    for (const int channel : channels) {
+      values.push_back(
+          std::clamp(image.values[pixel * image.channels.size() + channel], low, high));
+    }
+  }
+  return values;
+}
+
+/// Replaces R, G, B, and appends what they were.
+void put_denoised(Image& image, const std::vector<float>& denoised) {
+  const std::array<int, kRgb> colour = colour_channels(image, "the picture");
+  const std::size_t before = image.channels.size();
+  for (const char* name : {"noisy.R", "noisy.G", "noisy.B"}) image.channels.emplace_back(name);
+  std::vector<float> values;
+  values.reserve(image.pixel_count() * image.channels.size());
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
+    const float* const old = image.values.data() + pixel * before;
+    const std::size_t begin = values.size();
+    values.insert(values.end(), old, old + before);
+    for (int c = 0; c < kRgb; ++c) {
+      values.push_back(old[colour[c]]);
+      values[begin + colour[c]] = denoised[pixel * kRgb + c];
+    }
+  }
+  image.values = std::move(values);
+}
+
+}  // namespace
+
+/// Of the library's C interface, what is used of it.
+struct Denoiser::Functions {
+  using Handle = void*;
+  Handle (*new_device)(int type);
+  void (*commit_device)(Handle);
+  void (*release_device)(Handle);
+  int (*device_error)(Handle, const char** message);
+  Handle (*new_filter)(Handle device, const char* type);
+  void (*set_image)(Handle filter, const char* name, void* data, int format, std::size_t width,
+                    std::size_t height, std::size_t offset, std::size_t pixel_stride,
+                    std::size_t row_stride);
+  void (*set_bool)(Handle filter, const char* name, bool value);
+  void (*commit_filter)(Handle);
+  void (*execute_filter)(Handle);
+  void (*release_filter)(Handle);
+
+  /// @return whether all were found
+  bool find(void* library) {
+    const auto get = [&](auto& function, const char* name) {
+      function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
+          dlsym(library, name));
+      return function != nullptr;
+    };
+    return get(new_device, "oidnNewDevice") && get(commit_device, "oidnCommitDevice") &&
+           get(release_device, "oidnReleaseDevice") && get(device_error, "oidnGetDeviceError") &&
+           get(new_filter, "oidnNewFilter") && get(set_image, "oidnSetSharedFilterImage") &&
+           // Version 2 has another name for it.
+           (get(set_bool, "oidnSetFilterBool") || get(set_bool, "oidnSetFilter1b")) &&
+           get(commit_filter, "oidnCommitFilter") && get(execute_filter, "oidnExecuteFilter") &&
+           get(release_filter, "oidnReleaseFilter");
+  }
+};
+
+Denoiser::Denoiser() : functions_(std::make_unique<Functions>()) {}
+
+Denoiser::~Denoiser() {
+  if (library_ != nullptr) dlclose(library_);
+}
+
+std::shared_ptr<const Denoiser> Denoiser::load() {
+  const std::shared_ptr<Denoiser> denoiser(new Denoiser);
+  for (const char* name : {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
+                           "libOpenImageDenoise.so.0", "libOpenImageDenoise.so"}) {
+    denoiser->library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (denoiser->library_ == nullptr) continue;
+    if (denoiser->functions_->find(denoiser->library_)) return denoiser;
+    dlclose(denoiser->library_);
+    denoiser->library_ = nullptr;
+  }
+  fail(
+      "--denoise needs Open Image Denoise, and no libOpenImageDenoise.so.2, .1 or .0 can be "
+      "loaded; install it (Debian, Ubuntu: apt install libopenimagedenoise1; others: "
+      "https://www.openimagedenoise.org) and have LD_LIBRARY_PATH name its folder if that is not "
+      "a standard one");
+}
+
+void Denoiser::denoise(Image& image, const Image& guides) const {
+  constexpr float kLargest = 1e30F;
+  std::vector<float> colour = packed(image, {"R", "G", "B"}, 0, kLargest);
+  std::vector<float> albedo = packed(guides, {"albedo.R", "albedo.G", "albedo.B"}, 0, 1);
+  std::vector<float> normal = packed(guides, {"normal.X", "normal.Y", "normal.Z"}, -1, 1);
+  std::vector<float> denoised(colour.size());
+  const Functions& oidn = *functions_;
+  void* const device = oidn.new_device(kCpuDevice);
+  if (device == nullptr) fail("Open Image Denoise: there is no device");
+  oidn.commit_device(device);
+  void* const filter = oidn.new_filter(device, "RT");
+  const auto set = [&](const char* name, std::vector<float>& values) {
+    oidn.set_image(filter, name, values.data(), kFloat3, image.width, image.height, 0, 0, 0);
+  };
+  if (filter != nullptr) {
+    set("color", colour);
+    set("albedo", albedo);
+    set("normal", normal);
+    set("output", denoised);
+    oidn.set_bool(filter, "hdr", true);
+    oidn.commit_filter(filter);
+    oidn.execute_filter(filter);
+    oidn.release_filter(filter);
+  }
+  const char* message = nullptr;
+  const bool failed = oidn.device_error(device, &message) != 0;
+  const std::string reason = message == nullptr ? "unknown reason" : message;
+  oidn.release_device(device);
+  if (failed || filter == nullptr) fail("Open Image Denoise: {}", reason);
+  put_denoised(image, denoised);
+}
+
+}  // namespace freepath::program

@@ -1,0 +1,56 @@
+#pragma once
+/// @file Options on what is recorded of a picture, and what becomes of it.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/freepath/denoiser.h"
+#include "apps/freepath/tev_display.h"
+#include "freepath/render/layers.h"
+#include "freepath/render/pixel_window.h"
+#include "freepath/render/renderer.h"
+
+namespace CLI {
+class App;
+}
+
+namespace freepath::program {
+
+/// The options as they were typed.
+struct FilmOptions {
+  std::string layers, crop, display;
+  bool denoise = false;
+};
+
+/// What they mean.
+struct FilmPlan {
+  std::optional<LayerSet> layers;  ///< None: nothing was said.
+  std::optional<Crop> crop;
+  std::shared_ptr<const Denoiser> denoiser;  ///< Null: none.
+  std::optional<DisplayAddress> display;
+
+  /// Layers that a picture gets.
+  LayerSet written() const { return layers.value_or(LayerSet::standard()); }
+  /// Layers to record: a denoiser looks at more than is written.
+  LayerSet recorded() const {
+    return denoiser ? written().with({Layer::kAlbedo, Layer::kNormal}) : written();
+  }
+};
+
+void add_film_options(CLI::App& command, FilmOptions& options);
+
+/// @throws Error naming the option; where no denoiser can be loaded, how to get one
+FilmPlan read_film_options(const FilmOptions& options);
+
+/// Refuses a picture that this machine's memory can't hold: it would end the program, or others.
+void check_memory(const PixelWindow& window, const FilmPlan& plan);
+
+/// Shows the picture while these settings are rendered with, on the display that a plan names.
+/// A display that can't be reached, or is lost, is warned of.
+/// @param name of the picture there
+/// @return null if there is none; must outlive the rendering
+std::shared_ptr<TevDisplay> show_passes(const FilmPlan& plan, const std::string& name,
+                                        RenderSettings& settings);
+
+}  // namespace freepath::program
