@@ -120,18 +120,12 @@ class ShapeBuilder {
                                 boundary ? "an 'interface' is no light: this one stays dark"
                                          : "shapes of objects are no lights: this one stays dark");
     }
-    uint32_t first_primitive = 0;
     for (ShapeGeometry& geometry : read_geometry(context_, shape)) {
-      // Each part of a file is a shape of its own, since it is a light of its own.
+      // Each part of a file is a shape of its own, for it is a light of its own.
       const auto number = static_cast<uint32_t>(built_.shapes.size());
-      SurfaceShape surface{std::move(geometry),
-                           shape.world_from_object.start,
-                           shape.reverse_orientation,
-                           boundary,
-                           number,
-                           first_primitive};
+      SurfaceShape surface{std::move(geometry), shape.world_from_object.start,
+                           shape.reverse_orientation, boundary, number};
       check(surface);
-      first_primitive += primitive_count(surface.geometry);
       if (shines) {
         path_shape.light = static_cast<uint32_t>(built_.emitters.size());
         built_.emitters.push_back(
