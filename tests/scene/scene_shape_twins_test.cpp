@@ -158,6 +158,30 @@ TEST(SceneShapeTwins, LightsThatAreTurnedOverAreThoseThatAreReversed) {
   expect_same("mirrored mesh", flat + triangles + down, flat + mirror + triangles + up);
 }
 
+// A file of triangles and quads is two meshes, which shine each for itself.
+TEST(SceneShapeTwins, LightOfAFileHasFacesOfAllKinds) {
+  const auto write = [](const TemporaryFile& file, const std::string& faces, int count) {
+    std::ofstream(file.path()) << "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\n"
+                                  "property float y\nproperty float z\nelement face "
+                               << count
+                               << "\nproperty list uchar int vertex_indices\nend_header\n"
+                                  "-1 -1 0\n0 -1 0\n0 1 0\n-1 1 0\n1 -1 0\n1 1 0\n"
+                               << faces;
+  };
+  const TemporaryFile mixed("mixed.ply");
+  const TemporaryFile triangles("triangles.ply");
+  write(mixed, "3 0 1 2\n3 0 2 3\n4 1 4 5 2\n", 3);
+  write(triangles, "3 0 1 2\n3 0 2 3\n3 1 4 5\n3 1 5 2\n", 4);
+  const auto scene = [](const TemporaryFile& file) {
+    return stage(
+        "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 3 3 3 ] "
+        "\"bool twosided\" true Translate 0 -0.6 0 Rotate 60 1 1 0 "
+        "Shape \"plymesh\" \"string filename\" \"" +
+        file.path().string() + "\" AttributeEnd\n");
+  };
+  expect_twins("faces", scene(mixed), scene(triangles), 128);
+}
+
 // Media lie on the side away from the normal, or on the other where the shape is reversed.
 TEST(SceneShapeTwins, ReversedBoundarySwapsTheSidesOfMedia) {
   const std::string box = box_shape(Vec3d(-1), Vec3d(1));
