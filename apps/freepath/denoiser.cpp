@@ -19,8 +19,8 @@ constexpr int kFloat3 = 3;
 constexpr int kRgb = 3;
 
 /// Three channels of an image, packed.
-std::vector<float> packed(const Image& image, const std::array<const char*, kRgb>& names,
-                          float low, float high) {
+std::vector<float> packed(const Image& image, const std::array<const char*, kRgb>& names, float low,
+                          float high) {
   std::array<int, kRgb> channels{};
   for (int c = 0; c < kRgb; ++c) channels[c] = find_channel(image, names[c]).value();
   std::vector<float> values;
@@ -74,8 +74,8 @@ struct Denoiser::Functions {
   /// @return whether all were found
   bool find(void* library) {
     const auto get = [&](auto& function, const char* name) {
-      function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-          dlsym(library, name));
+      function =
+          reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
       return function != nullptr;
     };
     return get(new_device, "oidnNewDevice") && get(commit_device, "oidnCommitDevice") &&

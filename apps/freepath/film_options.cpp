@@ -29,9 +29,10 @@ Crop parse_crop(const std::string& text) {
       fail("--crop: '{}' has a number of pixels that is not whole", text);
     }
     if (crop.fractions && (number < 0 || number > 1)) {
-      fail("--crop: '{}' has a point and so is meant in fractions, from 0.0 to 1.0; pixels are "
-           "written without",
-           text);
+      fail(
+          "--crop: '{}' has a point and so is meant in fractions, from 0.0 to 1.0; pixels are "
+          "written without",
+          text);
     }
   }
   if (!(crop.x0 < crop.x1 && crop.y0 < crop.y1)) {

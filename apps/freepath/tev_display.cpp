@@ -189,8 +189,7 @@ void TevDisplay::send_rows(const Image& image, int first, int count) {
 void TevDisplay::send(const std::vector<char>& packet) {
   for (std::size_t sent = 0; sent < packet.size();) {
     if (socket_ < 0) return;
-    const ssize_t count =
-        ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
+    const ssize_t count = ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
     if (count >= 0) {
       sent += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {

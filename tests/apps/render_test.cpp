@@ -80,12 +80,12 @@ TEST_F(RenderTest, WritesEveryPictureAskedForAndNothingElse) {
   EXPECT_EQ(read_image(path("second.exr")).values, read_image(path("picture.exr")).values);
 }
 
-TEST_F(RenderTest, AnExrHasTheColourAndAllAovs) {
+TEST_F(RenderTest, AnExrHasTheColourAndTheLayersThatCostNothing) {
   std::vector<std::string> channels = render("").channels;
   std::sort(channels.begin(), channels.end());
   EXPECT_EQ(channels, (std::vector<std::string>{"A", "B", "G", "R", "albedo.B", "albedo.G",
-                                                "albedo.R", "depth.Z", "lookups", "variance.B",
-                                                "variance.G", "variance.R"}));
+                                                "albedo.R", "depth.Z", "lookups", "samples",
+                                                "variance.B", "variance.G", "variance.R"}));
 }
 
 TEST_F(RenderTest, AovsMeanWhatTheyAreCalled) {

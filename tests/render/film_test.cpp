@@ -94,6 +94,23 @@ TEST(Film, CountsTheSamplesOfItsPixels) {
   EXPECT_EQ(counts(), (std::array<std::size_t, 3>{1, 2, 0}));
 }
 
+TEST(Film, KeepsTheMeansOfEvenAndOddSamples) {
+  Film film(PixelWindow::whole(2, 1), {Layer::kHalves, Layer::kSamples});
+  for (const float x : {1, 10, 3, 20, 5}) film.add(1, {.radiance = {x, 2 * x, 0}});
+  const Image image = film.to_image();
+  EXPECT_EQ(value(image, 1, "A.R"), 3);
+  EXPECT_EQ(value(image, 1, "B.R"), 15);
+  EXPECT_EQ(value(image, 1, "A.G"), 6);
+  EXPECT_EQ(value(image, 1, "samples"), 5);
+  EXPECT_EQ(value(image, 0, "B.R"), 0);
+}
+
+TEST(Film, TakesMemoryForItsLayersAlone) {
+  EXPECT_EQ(Film::bytes_per_pixel({}), Film::bytes_per_pixel(LayerSet::standard()));
+  EXPECT_EQ(Film::bytes_per_pixel({Layer::kNormal}), Film::bytes_per_pixel({}) + 24);
+  EXPECT_LE(Film::bytes_per_pixel(LayerSet::all()), 280U);
+}
+
 TEST(Film, RefusesToBeEmpty) {
   EXPECT_THROW(Film(0, 10), Error);
   EXPECT_THROW(Film(10, -1), Error);
