@@ -162,12 +162,12 @@ TEST(EmissionGuide, ReachesAllThatEmits) {
     index = index * Vec3d(26, 22, 20) - Vec3d(1);
     if (fixture.density->voxels.interpolate(index) <= 1e-4) continue;
     ++glowing;
-    const Vec3f place = apply(cells.emitters.world_to_grid, fixture.at(index));
+    const Vec3f place = apply(cells.grid.world_to_grid, fixture.at(index));
     Vec3i cell;
     for (int axis = 0; axis < 3; ++axis) {
-      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.emitters.counts[axis] - 1);
+      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.grid.counts[axis] - 1);
     }
-    ASSERT_GT(cells.power[cells.emitters.index(cell)], 0);
+    ASSERT_GT(cells.power[cells.grid.index(cell)], 0);
   }
   EXPECT_GT(glowing, 10'000);
 }
