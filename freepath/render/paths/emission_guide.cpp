@@ -12,6 +12,9 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// A ray that moves less along an axis does not move [cells/m]; reciprocals stay finite.
+constexpr float kFlat = 1e-30F;
+
 }  // namespace
 
 EmissionGuide::EmissionGuide(EmissionCells cells) : cells_(std::move(cells)) {
@@ -56,7 +59,8 @@ float EmissionGuide::pdf(const Vec3f& position, const Vec3f& direction) const {
     along[axis] = direction.x * linear[0][axis] + direction.y * linear[1][axis] +
                   direction.z * linear[2][axis];
     const auto size = static_cast<float>(grid.counts[axis]);
-    if (along[axis] == 0) {
+    if (std::abs(along[axis]) < kFlat) {
+      along[axis] = 0;
       if (!(origin[axis] >= 0 && origin[axis] <= size)) return 0;
       continue;
     }
