@@ -164,12 +164,12 @@ double mean_opacity(const Vec3d& from, double sigma_t) {
 }
 
 /// A box of one glowing medium that scatters isotropically, seen through its middle, with at most
-/// one scattering: ∫ e^(-σ_t t) (σ_a L_e + σ_s B (1 - e^(-σ_t s)) averaged over directions) dt, where
-/// s is the way out and B = σ_a L_e / σ_t.
+/// one scattering: ∫ e^(-σ_t t) (σ_a L_e + σ_s B (1 - e^(-σ_t s)) averaged over directions) dt,
+/// where s is the way out and B = σ_a L_e / σ_t.
 TEST(EmissionSampling, SingleScatteringOfABoxIsThatOfQuadrature) {
-  const BuiltScene built = build(scene_text(
-      "0 0", "0.01",
-      R"(MakeNamedMedium "glow" "string type" "homogeneous" "rgb sigma_a" [0.4 0.4 0.4]
+  const BuiltScene built = build(
+      scene_text("0 0", "0.01",
+                 R"(MakeNamedMedium "glow" "string type" "homogeneous" "rgb sigma_a" [0.4 0.4 0.4]
   "rgb sigma_s" [1.2 1.2 1.2] "rgb Le" [1 1 1]
 )" + kBox));
   const PathScene& scene = built.scene;
@@ -187,8 +187,9 @@ TEST(EmissionSampling, SingleScatteringOfABoxIsThatOfQuadrature) {
   }
   expected *= scene.exposure_scale;
   for (const bool samples_emission : {false, true}) {
-    const Rendered rendered = render(
-        scene, 600, {.samples_emission = samples_emission, .tracker = "delta", .max_scatterings = 1});
+    const Rendered rendered =
+        render(scene, 600,
+               {.samples_emission = samples_emission, .tracker = "delta", .max_scatterings = 1});
     EXPECT_TRUE(check_mean("radiance", rendered.red, expected,
                            {.absolute = 3e-4 * expected, .largest_relative_error = 0.005}));
   }

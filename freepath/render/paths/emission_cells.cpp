@@ -277,8 +277,7 @@ struct GridMaker {
       for (int axis = 0; axis < 3; ++axis) {
         const double voxels = std::ceil(size[axis] * medium.super_voxels().cell_size);
         const double wanted = std::ceil(edges[axis] / longest * resolution - 1e-3);
-        finer[axis] =
-            static_cast<int>(std::max(1.0, computed ? wanted : std::min(wanted, voxels)));
+        finer[axis] = static_cast<int>(std::max(1.0, computed ? wanted : std::min(wanted, voxels)));
       }
       if (static_cast<double>(finer.x) * finer.y * finer.z > most_cells) break;
       counts = finer;

@@ -32,9 +32,9 @@ EmissionGuide::EmissionGuide(EmissionCells cells) : cells_(std::move(cells)) {
 std::optional<GuideSample> EmissionGuide::sample(const Vec3f& position,
                                                  RandomStream& random) const {
   if (table_.empty()) return std::nullopt;
-  std::size_t cell = std::min(
-      static_cast<std::size_t>(random.uniform() * static_cast<float>(table_.size())),
-      table_.size() - 1);
+  std::size_t cell =
+      std::min(static_cast<std::size_t>(random.uniform() * static_cast<float>(table_.size())),
+               table_.size() - 1);
   // What is left of that number is too coarse to decide.
   if (!(random.uniform() < table_[cell].threshold)) cell = table_[cell].alias;
   Vec3f point(cells_.grid.cell(cell));
@@ -80,8 +80,8 @@ float EmissionGuide::pdf(const Vec3f& position, const Vec3f& direction) const {
   Vec3i stride(grid.counts.y * grid.counts.z, grid.counts.z, 1);
   int index = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const int cell = std::clamp(static_cast<int>(origin[axis] + along[axis] * begin), 0,
-                                grid.counts[axis] - 1);
+    const int cell =
+        std::clamp(static_cast<int>(origin[axis] + along[axis] * begin), 0, grid.counts[axis] - 1);
     index += cell * stride[axis];
     const bool forward = along[axis] > 0;
     face[axis] = static_cast<float>(forward ? cell + 1 : cell);

@@ -18,8 +18,8 @@ void EmissionTracer::add(uint32_t owner, const ScenePath& path, const Vec3f& pos
                          const Vec3f& direction, const Channels& weight) {
   float length = kInfinity;
   // No surface cuts the medium where it is clear.
-  const bool clear = scene_.is_clear[path.medium] && scene_.media[path.medium].bounds().intersects(
-                                                         Vec3d(position) + scene_.origin);
+  const bool clear = scene_.is_clear[path.medium] &&
+                     scene_.media[path.medium].bounds().intersects(Vec3d(position) + scene_.origin);
   if (scene_.surfaces && !clear) {
     if (const auto hit = scene_.surfaces->intersect(position, direction, 0, kInfinity)) {
       length = hit->t;

@@ -31,7 +31,7 @@ struct ScenePath {
   float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
   float emission_share = 1;
-  int hero = 0;   ///< The channel that decides where channels part.
+  int hero = 0;  ///< The channel that decides where channels part.
   bool only_hero = false;
   bool is_dead = false;
 
