@@ -61,8 +61,8 @@ struct Fixture {
 
   Vec3f at(const Vec3d& index) const { return Vec3f(index * crooked() - kOrigin); }
   std::vector<Vec3f> positions() const {
-    return {at({2, 3, 4}),    at({12, 12, 6}),    at({11, 2, 15}),
-            at({-9, 4, 4}),   at({40, 30, -20}),  at({24, 20, 18})};
+    return {at({2, 3, 4}),  at({12, 12, 6}),   at({11, 2, 15}),
+            at({-9, 4, 4}), at({40, 30, -20}), at({24, 20, 18})};
   }
 };
 
@@ -80,8 +80,8 @@ TEST(EmissionGuide, PdfIntegratesToOneByQuadrature) {
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
       for (int j = 0; j < kSteps; ++j) {
-        sum += fixture.guide.pdf(position,
-                                 cylinder_direction((i + 0.5) / kSteps, (j + 0.5) / kSteps));
+        sum +=
+            fixture.guide.pdf(position, cylinder_direction((i + 0.5) / kSteps, (j + 0.5) / kSteps));
       }
     }
     EXPECT_NEAR(sum * 4 * std::numbers::pi / kSteps / kSteps, 1, 2e-3);
@@ -162,12 +162,12 @@ TEST(EmissionGuide, ReachesAllThatEmits) {
     index = index * Vec3d(26, 22, 20) - Vec3d(1);
     if (fixture.density->voxels.interpolate(index) <= 1e-4) continue;
     ++glowing;
-    const Vec3f place = apply(cells.emitters.world_to_grid, fixture.at(index));
+    const Vec3f place = apply(cells.grid.world_to_grid, fixture.at(index));
     Vec3i cell;
     for (int axis = 0; axis < 3; ++axis) {
-      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.emitters.counts[axis] - 1);
+      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.grid.counts[axis] - 1);
     }
-    ASSERT_GT(cells.power[cells.emitters.index(cell)], 0);
+    ASSERT_GT(cells.power[cells.grid.index(cell)], 0);
   }
   EXPECT_GT(glowing, 10'000);
 }
@@ -194,14 +194,15 @@ TEST(EmissionGuide, DarkMediaHaveNoDirections) {
 
 /// A temperature that glows in a part of the density alone, through a table of its radiance.
 TEST(EmissionGuide, FollowsTemperature) {
-  const auto density =
-      testing::make_field(Vec3i(0), Vec3i(15), [](auto&) { return 1.0F; }, crooked());
+  const auto density = testing::make_field(
+      Vec3i(0), Vec3i(15), [](auto&) { return 1.0F; }, crooked());
   const auto temperature = testing::make_field(
       Vec3i(0), Vec3i(15), [](const Vec3i& v) { return v.x < 4 ? 1.0F : 0.1F; }, crooked());
   BoundMedium bound = make_bound(density);
   for (RadianceField& radiance : bound.channels.components[0].radiance) {
-    radiance = {temperature, std::make_shared<const std::vector<float>>(
-                                 std::vector<float>{0, 0, 0, 0, 0, 1}), 0, 0.2F};
+    radiance = {temperature,
+                std::make_shared<const std::vector<float>>(std::vector<float>{0, 0, 0, 0, 0, 1}), 0,
+                0.2F};
   }
   const EmissionGuide guide(bound, kOrigin);
   RandomStream random(2, 2, 2, 2);

@@ -151,7 +151,6 @@ class Emitter {
                  grid_to_walk * to_matrix(bound.medium->walk_to_component(component)),
                  grid_to_world) {
     for (int c = 0; c < count_; ++c) {
-      emits_ = emits_ || factor(c) > 0;
       const Field* const field = channels_.radiance[c].field.get();
       if (field == nullptr || factor(c) == 0) continue;
       if (c > 0 && field == channels_.radiance[c - 1].field.get() && radiance_[c - 1]) {
@@ -163,16 +162,14 @@ class Emitter {
     }
   }
 
-  /// Mean over the channels [1/m].
-  double extinction(const Vec3d& point) const {
-    double sum = 0;
-    for (int c = 0; c < count_; ++c) sum += channels_.sigma_a[c] + channels_.sigma_s[c];
-    return density_.at(point) * sum / count_;
+  bool emits() const {
+    float sum = 0;
+    for (int c = 0; c < count_; ++c) sum += factor(c);
+    return sum > 0;
   }
 
   /// Mean over the channels [radiance/m].
   double at(const Vec3d& point) const {
-    if (!emits_) return 0;
     const double density = density_.at(point);
     if (!(density > 0)) return 0;
     double sum = 0;
@@ -189,7 +186,6 @@ class Emitter {
 
   /// No point of the box emits more.
   double bound(const Box3d& box) const {
-    if (!emits_) return 0;
     const double density = density_.range(box).maximum;
     if (!(density > 0)) return 0;
     double sum = 0;
@@ -207,7 +203,6 @@ class Emitter {
 
   const ComponentChannels& channels_;
   int count_;
-  bool emits_ = false;
   PlacedField density_;
   std::array<std::shared_ptr<const PlacedField>, kMaxChannels> radiance_;  // null: 1
 };
@@ -260,6 +255,7 @@ struct GridMaker {
     const Matrix4d to_walk = grid_to_walk(box, counts);
     for (std::size_t k = 0; k < bound.channels.components.size(); ++k) {
       result.emplace_back(bound, k, to_walk, to_walk * walk_to_world * from_origin);
+      if (!result.back().emits()) result.pop_back();
     }
     return result;
   }
@@ -325,10 +321,10 @@ EmissionCells estimate_emission(const BoundMedium& bound, const Vec3d& origin, i
   const Box3d glowing = maker.emitting_part(whole);
   if (glowing.isEmpty()) return cells;
 
-  cells.emitters = maker.make(glowing, maker.choose_counts(glowing, most_cells));
-  const auto emitters = maker.emitters(glowing, cells.emitters.counts);
-  cells.power.resize(cells.emitters.size());
-  for_each_cell(cells.emitters, [&](std::size_t i, const Vec3i& cell) {
+  cells.grid = maker.make(glowing, maker.choose_counts(glowing, most_cells));
+  const auto emitters = maker.emitters(glowing, cells.grid.counts);
+  cells.power.resize(cells.grid.size());
+  for_each_cell(cells.grid, [&](std::size_t i, const Vec3i& cell) {
     const double most = bound_of(emitters, cell);
     if (!(most > 0)) return;
     const double mean = mean_over_cell(cell, [&](const Vec3d& point) {
@@ -337,17 +333,6 @@ EmissionCells estimate_emission(const BoundMedium& bound, const Vec3d& origin, i
       return sum;
     });
     cells.power[i] = static_cast<float>(std::max(mean, kLeastShare * most));
-  });
-
-  cells.receivers = maker.make(whole, maker.choose_counts(whole, most_cells));
-  const auto absorbers = maker.emitters(whole, cells.receivers.counts);
-  cells.extinction.resize(cells.receivers.size());
-  for_each_cell(cells.receivers, [&](std::size_t i, const Vec3i& cell) {
-    cells.extinction[i] = static_cast<float>(mean_over_cell(cell, [&](const Vec3d& point) {
-      double sum = 0;
-      for (const Emitter& absorber : absorbers) sum += absorber.extinction(point);
-      return sum;
-    }));
   });
   return cells;
 }

@@ -29,15 +29,12 @@ struct CellGrid {
   double cell_volume() const;  ///< [m³, world]
 };
 
-/// What parts of a medium emit and how opaque others are, both means over the channels.
+/// What the parts of a medium emit.
 struct EmissionCells {
-  CellGrid emitters;  ///< Of the box around all that can emit; no cells where nothing can.
-  /// Estimated means of Σ_k ρ_k σ_a,k L_k over the cells [radiance/m]. 0 only where nothing can be
-  /// emitted.
+  CellGrid grid;  ///< Of the box around all that can emit; no cells where nothing can.
+  /// Estimated means of Σ_k ρ_k σ_a,k L_k over the cells and the channels [radiance/m]. 0 only
+  /// where nothing can be emitted.
   std::vector<float> power;
-
-  CellGrid receivers;             ///< Of the whole medium.
-  std::vector<float> extinction;  ///< Estimated means over the cells [1/m].
 };
 
 /// The point that a map takes a point to.
@@ -52,7 +49,7 @@ inline Vec3f apply(const AffineMap& map, const Vec3f& point) {
 /// Evaluates emission at a few points of each cell. A cell's bounds decide whether it can emit, and
 /// give it a little power however little the points found.
 /// @param origin that positions are relative to [world]
-/// @param most_cells of each grid; and no more than one for each voxel
+/// @param most_cells and no more than one for each voxel
 EmissionCells estimate_emission(const BoundMedium& bound, const Vec3d& origin, int most_cells);
 
 }  // namespace freepath

@@ -19,19 +19,17 @@ struct GuideSample {
 };
 
 /// Draws directions towards points of an emissive medium, for what a whole line through it emits
-/// [Simon17]: a cell of a grid, then a point uniform in the cell. The density of a direction is
-/// that of all points along it.
+/// [Simon17]: a cell of a grid by what it emits, then a point uniform in the cell. The density of a
+/// direction is that of all points along it.
 ///
-/// How probable a cell is depends on where one looks from, by a table over the parts of the medium:
-/// it is what the cell emits, over the square of the distance, times a rough estimate of the
-/// transmittance. A line collects emission without regard to the distance, but the more points a
-/// solid angle holds the farther they are.
+/// Cells are drawn without regard to where one looks from: what is near fills so much of the sphere
+/// that the phase function finds it. (In a fireball, weights by distance and by transmittance left
+/// the variance of both techniques together as it was or raised it.)
 ///
 /// Positions are relative to the origin. Immutable, so threads share it.
 class EmissionGuide {
  public:
-  /// Cells of either side of the table: it has 12 bytes for each pair.
-  static constexpr int kMostCells = 512;
+  static constexpr int kMostCells = 4096;
 
   /// @param origin that positions are relative to [world]
   EmissionGuide(const BoundMedium& bound, const Vec3d& origin, int most_cells = kMostCells)
@@ -51,16 +49,10 @@ class EmissionGuide {
   const EmissionCells& cells() const { return cells_; }
 
  private:
-  void fill_row(std::size_t row);
-  /// Of a position: that of its receiver, or the last.
-  std::size_t row_of(const Vec3f& position) const;
-  float pdf(std::size_t row, const Vec3f& position, const Vec3f& direction) const;
-
   EmissionCells cells_;
   double power_ = 0;
-  // Rows of emitters, one for each receiver and one for positions beyond them.
-  std::vector<float> density_;  ///< Probability over volume, divided by 3 [1/m³].
-  std::vector<AliasEntry> table_;
+  std::vector<float> density_;     ///< Probability of a cell over its volume, divided by 3 [1/m³].
+  std::vector<AliasEntry> table_;  ///< Of the cells.
 };
 
 }  // namespace freepath
