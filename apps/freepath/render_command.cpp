@@ -182,9 +182,10 @@ RenderSettings read_settings(const Options& options) {
 /// Options that a scene's file has the say in.
 void check_scene_options(const CLI::App& command) {
   constexpr const char* kOfVolumes[] = {
-      "--grid",     "--density-scale", "--albedo", "--sigma-a",   "--sigma-s", "--g",   "--le",
-      "--negative", "--environment",   "--sun",    "--turbidity", "--look-at", "--fov", "--up",
-      "--frames",   "--super-voxel"};
+      "--grid",   "--density-scale", "--albedo",  "--sigma-a",  "--sigma-s",
+      "--g",      "--phase",         "--le",      "--negative", "--environment",
+      "--sun",    "--turbidity",     "--look-at", "--fov",      "--up",
+      "--frames", "--super-voxel"};
   for (const char* name : kOfVolumes) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option != nullptr && option->count() > 0) {

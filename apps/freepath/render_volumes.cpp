@@ -8,6 +8,7 @@
 
 #include "apps/freepath/parse.h"
 #include "freepath/base/error.h"
+#include "freepath/media/phase/parse_phase_function.h"
 
 namespace freepath::program {
 namespace {
@@ -42,7 +43,16 @@ OpticalProperties read_optics(const VolumeOptions& options, std::size_t volume) 
     fail("--albedo and --sigma-a or --sigma-s say the same thing twice; give one or the other");
   }
   number(options.density_scale, "--density-scale", optics.density_scale);
-  number(options.g, "--g", optics.g);
+  if (!options.g.empty() && !options.phase.empty()) {
+    fail("--g and --phase say the same thing twice; give one or the other");
+  }
+  if (const double* const g = value_for(volume, volumes, options.g, "--g")) {
+    optics.phase = read_option(
+        "--g", [&] { return PhaseFunction::henyey_greenstein(static_cast<float>(*g)); });
+  }
+  if (const std::string* const text = value_for(volume, volumes, options.phase, "--phase")) {
+    optics.phase = read_option("--phase", [&] { return parse_phase_function(*text); });
+  }
   spectrum(options.albedo, "--albedo", optics.albedo);
   spectrum(options.sigma_a, "--sigma-a", optics.sigma_a);
   spectrum(options.sigma_s, "--sigma-s", optics.sigma_s);
@@ -121,6 +131,10 @@ void add_volume_options(CLI::App& command, VolumeOptions& o) {
   add("--sigma-a", o.sigma_a, "Absorption per unit of density, V or R,G,B [1/unit]");
   add("--sigma-s", o.sigma_s, "Scattering per unit of density, V or R,G,B [1/unit]");
   add("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function [0]")->check(kFiniteNumber);
+  add("--phase", o.phase,
+      "Phase function: isotropic, henyey-greenstein:g=0.8, rayleigh, draine:g=0.5,alpha=1, "
+      "droplets:diameter=20 [um], tabulated:FILE of angles and values, or a mixture, "
+      "0.7*droplets:diameter=10+0.3*rayleigh [isotropic]");
   add("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e [0]");
   command.add_option("--negative", o.negative, "Negative densities: error or clamp")
       ->capture_default_str()

@@ -18,6 +18,7 @@ struct VolumeOptions {
   std::vector<std::string> files;
   std::vector<std::string> grids;  ///< "density", or three for R,G,B: "red,green,blue"
   std::vector<double> density_scale, g;
+  std::vector<std::string> phase;
   std::vector<std::string> albedo, sigma_a, sigma_s, radiance;
   std::string negative = "error";
 };

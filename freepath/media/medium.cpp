@@ -33,10 +33,6 @@ void check_component(const Component& component, const Component& first, std::si
   check_spectrum(component.emission, "emission", number);
   check_spectrum(component.sigma_t(), "sigma_a + sigma_s", number);
   check_spectrum(component.sigma_a * component.emission, "sigma_a · emission", number);
-  if (!(std::abs(component.g) < 1)) {
-    fail("component {}: g is {}; the mean cosine must lie strictly between -1 and 1", number,
-         component.g);
-  }
   if (!component.density || (!component.density->function && component.density->voxels.empty())) {
     fail("component {}: its density has no active voxel", number);
   }

@@ -10,6 +10,7 @@
 #include "freepath/base/vector.h"
 #include "freepath/media/field.h"
 #include "freepath/media/page_allocator.h"
+#include "freepath/media/phase/phase_function.h"
 #include "freepath/media/super_voxels.h"
 #include "freepath/media/walk_space.h"
 
@@ -27,7 +28,7 @@ struct Component {
   std::shared_ptr<const Field> density;
   Spectrum sigma_a{0.0F};   ///< Absorption per unit of density [1/m].
   Spectrum sigma_s{1.0F};   ///< Scattering per unit of density [1/m].
-  float g = 0;              ///< Mean cosine of the Henyey-Greenstein phase function, |g| < 1.
+  PhaseFunction phase;      ///< Isotropic unless it is set.
   Spectrum emission{0.0F};  ///< L_e, emitted radiance; the source term is sigma_a · density · L_e.
 
   Spectrum sigma_t() const { return sigma_a + sigma_s; }
@@ -52,7 +53,7 @@ class Medium {
   /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
   /// @param world_to_index replaces the inverse of the fields' transform where that has none (a
   ///   plane-parallel slab collapses x and y); all fields must then share it
-  /// @throws Error for coefficients that are negative or not finite, |g| >= 1, too many components,
+  /// @throws Error for coefficients that are negative or not finite, too many components,
   ///   an empty field, and as make_walk_space
   explicit Medium(std::vector<Component> components, int super_voxel = 0,
                   const std::optional<Matrix4d>& world_to_index = {});

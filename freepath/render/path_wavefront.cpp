@@ -58,7 +58,7 @@ void copy_ray(RayStream& rays, std::size_t from, std::size_t to) {
 
 PathWavefront::PathWavefront(const PathSetup& setup) : setup_(setup) {
   for (const Component& component : setup.medium->components()) {
-    phases_.emplace_back(component.g);
+    phases_.push_back(component.phase);
     albedos_.push_back(albedo_of(component));
   }
   paths_in_flight_.resize(setup.slots);
@@ -229,7 +229,7 @@ bool PathWavefront::scatter(Path& path, std::size_t slot) {
                         rays_.direction[2][slot]);
   const Vec3f origin(rays_.origin[0][slot], rays_.origin[1][slot], rays_.origin[2][slot]);
   const Vec3f position = origin + direction * flights_.t[slot];
-  const HenyeyGreenstein& phase = phases_[flights_.component[slot]];
+  const PhaseFunction& phase = phases_[flights_.component[slot]];
   sample_light(path, slot, position, direction, phase, random);
 
   const float u1 = random.uniform();
@@ -242,7 +242,7 @@ bool PathWavefront::scatter(Path& path, std::size_t slot) {
 }
 
 void PathWavefront::sample_light(const Path& path, std::size_t slot, const Vec3f& position,
-                                 const Vec3f& direction, const HenyeyGreenstein& phase,
+                                 const Vec3f& direction, const PhaseFunction& phase,
                                  RandomStream& random) {
   if (setup_.lights->is_dark()) return;
   const float u0 = random.uniform();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "freepath/base/random.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/phase_function.h"
 #include "freepath/render/camera.h"
 #include "freepath/render/film.h"
 #include "freepath/render/layer_recorder.h"
@@ -107,14 +107,14 @@ class PathWavefront {
   void escape(Path& path, const Vec3f& direction);
   bool scatter(Path& path, std::size_t slot);
   void sample_light(const Path& path, std::size_t slot, const Vec3f& position,
-                    const Vec3f& direction, const HenyeyGreenstein& phase, RandomStream& random);
+                    const Vec3f& direction, const PhaseFunction& phase, RandomStream& random);
   void record_first_event(Path& path, std::size_t slot) const;
   void record_layers(const Path& path, std::size_t slot);
   void finish(const Path& path, int channel);
   void trace_shadows();
 
   const PathSetup& setup_;
-  std::vector<HenyeyGreenstein> phases_;  // of the components
+  std::vector<PhaseFunction> phases_;  // of the components
   std::vector<Spectrum> albedos_;         // of the components
   std::vector<Path> paths_in_flight_;
   RayStream rays_;

@@ -14,7 +14,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/base/threads.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/phase_function.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath {
@@ -66,7 +66,7 @@ class SlabWavefront {
   SlabWavefront(const SlabMedium& slab, const Walker& walker, const SlabSettings& settings)
       : half_space_(slab.half_space), walker_(walker), settings_(settings) {
     for (const Component& component : slab.medium.components()) {
-      phases_.emplace_back(component.g);
+      phases_.push_back(component.phase);
     }
     paths_in_flight_.resize(std::max<std::size_t>(settings.batch, 1));
   }
@@ -183,7 +183,7 @@ class SlabWavefront {
   bool half_space_;
   const Walker& walker_;
   const SlabSettings& settings_;
-  std::vector<HenyeyGreenstein> phases_;  // of the components
+  std::vector<PhaseFunction> phases_;  // of the components
   uint64_t first_path_ = 0;
   std::vector<Path> paths_in_flight_;
   std::vector<Outcome> outcomes_;

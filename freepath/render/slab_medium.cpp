@@ -161,7 +161,7 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel) 
     component.density = make_field(column, kind.members);
     component.sigma_s = Spectrum(static_cast<float>(kind.layer.albedo));
     component.sigma_a = Spectrum(1.0F) - component.sigma_s;
-    component.g = static_cast<float>(kind.layer.g);
+    component.phase = PhaseFunction::henyey_greenstein(static_cast<float>(kind.layer.g));
     components.push_back(std::move(component));
   }
   // Everything is at x = y = 0 of the index; z = 0 of the world is the face of the first voxel.

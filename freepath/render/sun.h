@@ -7,7 +7,7 @@
 
 #include "freepath/base/spectrum.h"
 #include "freepath/base/vector.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/base/tangent_frame.h"
 #include "freepath/render/up_axis.h"
 
 namespace freepath {

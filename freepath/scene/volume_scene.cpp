@@ -44,7 +44,7 @@ void add_components(Volume volume, std::vector<Component>& components) {
   for (std::size_t i = 0; i < densities; ++i) {
     Component component;
     component.density = std::make_shared<const Field>(std::move(volume.densities[i]));
-    component.g = volume.optics.g;
+    component.phase = volume.optics.phase;
     component.emission = volume.optics.emission;
     set_coefficients(volume.optics, component);
     if (densities > 1) {

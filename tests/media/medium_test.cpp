@@ -81,19 +81,6 @@ TEST(Medium, RefusesCoefficientsWhoseSumOrProductOverflows) {
             "negative");
 }
 
-TEST(Medium, RefusesAMeanCosineThatIsNotBetweenMinusOneAndOne) {
-  for (const float bad : {-1.0F, 1.0F, 1.5F, kNan, kInfinity}) {
-    Component component = plain();
-    component.g = bad;
-    EXPECT_EQ(complaint({component}).find("component 0: g is"), 0U) << bad;
-  }
-  for (const float good : {-0.999F, 0.0F, 0.999F}) {
-    Component component = plain();
-    component.g = good;
-    EXPECT_EQ(complaint({component}), "") << good;
-  }
-}
-
 TEST(Medium, HasOneToEightComponents) {
   EXPECT_EQ(complaint({}), "a medium has 1 to 8 components, not 0");
   EXPECT_EQ(complaint(std::vector<Component>(8, plain())), "");

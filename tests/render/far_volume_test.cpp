@@ -23,7 +23,7 @@ Medium lump(const Matrix4d& index_to_world) {
   component.density = make_field(Vec3i(-12), Vec3i(11), density, index_to_world);
   component.sigma_a = Spectrum(0.2F);
   component.sigma_s = Spectrum(3, 2, 1.5F);
-  component.g = 0.5F;
+  component.phase = PhaseFunction::henyey_greenstein(0.5F);
   return Medium({component});
 }
 

@@ -68,23 +68,6 @@ TEST(Octahedral, UniformDirectionsAreUniformPoints) {
   EXPECT_TRUE(testing::check_chi_square("equal areas", testing::chi_square_test(counts, expected)));
 }
 
-TEST(Octahedral, ContinuesBeyondItsEdges) {
-  // A step across an edge arrives where the map continues: the same direction to within the step.
-  constexpr int kSize = 64;
-  for (int i = 0; i < kSize; ++i) {
-    for (const auto& [column, row] : {std::pair{-1, i}, {kSize, i}, {i, -1}, {i, kSize}}) {
-      const auto direction = [](int c, int r) {
-        return direction_from_octahedral(
-            {(static_cast<float>(c) + 0.5F) / kSize, (static_cast<float>(r) + 0.5F) / kSize});
-      };
-      const OctahedralTexel there = wrap_octahedral(column, row, kSize);
-      const Vec3f inside =
-          direction(std::clamp(column, 0, kSize - 1), std::clamp(row, 0, kSize - 1));
-      EXPECT_LE((direction(there.column, there.row) - inside).length(), 0.1F);
-    }
-  }
-}
-
 TEST(OctahedralEnvironment, ShowsThePixelThatLiesInADirection) {
   const Image image = testing::colour_image(
       8, 8, [](int column, int row) { return Vec3f(10.0F * row + column, 1, 0); });
@@ -97,27 +80,7 @@ TEST(OctahedralEnvironment, ShowsThePixelThatLiesInADirection) {
   }
 }
 
-TEST(OctahedralEnvironment, IsContinuousEverywhere) {
-  // Along random great circles; the steepest slope is 40 from one pixel to the next.
-  const OctahedralEnvironment environment(testing::rough_image(16, 16).pixels, kWeights, "rough");
-  RandomStream random(9, 9, 9, 9);
-  for (int circle = 0; circle < 50; ++circle) {
-    const float u0 = random.uniform();
-    const TangentFrame frame(sample_sphere(u0, random.uniform()));
-    constexpr int kSteps = 20'000;
-    float before = environment.evaluate(frame.tangent).radiance.x;
-    for (int i = 1; i <= kSteps; ++i) {
-      const auto angle = static_cast<float>(2 * kPi * i / kSteps);
-      const float after =
-          environment.evaluate(frame.to_world(std::cos(angle), std::sin(angle), 0)).radiance.x;
-      ASSERT_LE(std::abs(after - before), 0.15F);
-      before = after;
-    }
-  }
-}
-
 TEST(OctahedralEnvironment, TheFluenceIsThatOfThePixels) {
-  // The interpolant has the mean of the pixels, since what leaves over an edge comes in elsewhere.
   const Image image = testing::rough_image(17, 17).pixels;
   double sum = 0;
   for (std::size_t i = 0; i < image.values.size(); ++i) sum += image.values[i] * kWeights[i % 3];

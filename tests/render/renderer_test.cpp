@@ -38,7 +38,7 @@ Component cloud(Spectrum sigma_a, Spectrum sigma_s, float g) {
   component.density = lumpy_field();
   component.sigma_a = sigma_a;
   component.sigma_s = sigma_s;
-  component.g = g;
+  component.phase = PhaseFunction::henyey_greenstein(g);
   return component;
 }
 

@@ -206,12 +206,12 @@ std::vector<Component> two_components(const Planted& planted = {}) {
   components[0].sigma_s = (Spectrum(0.8F, 0.5F, 0.3F) + Spectrum(planted.split)) * scale;
   components[0].sigma_a = (Spectrum(0.2F, 0.5F, 0.7F) - Spectrum(planted.split)) * scale;
   components[0].emission = Spectrum(1, 2, 0.5F) * planted.emission;
-  components[0].g = 0.8F;
+  components[0].phase = PhaseFunction::henyey_greenstein(0.8F);
   components[1].density = lumpy_field(1);
   components[1].sigma_s = Spectrum(0.4F, 0.9F, 0.7F) * scale;
   components[1].sigma_a = Spectrum(0.6F, 0.1F, 0.3F) * scale;
   components[1].emission = Spectrum(0.3F, 1, 4) * planted.emission;
-  components[1].g = -0.2F;
+  components[1].phase = PhaseFunction::henyey_greenstein(-0.2F);
   return components;
 }
 

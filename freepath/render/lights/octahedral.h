@@ -49,22 +49,4 @@ inline Vec3f direction_from_octahedral(const SquarePoint& p) {
           std::copysign(1.0F - r * r, inside)};
 }
 
-/// A pixel of a square octahedral image, for one that may lie up to a size beyond its edge: there
-/// the map continues with the pixels turned about the edge's middle.
-struct OctahedralTexel {
-  int column, row;
-};
-
-inline OctahedralTexel wrap_octahedral(int column, int row, int size) {
-  if (column < 0 || column >= size) {
-    column = column < 0 ? -1 - column : 2 * size - 1 - column;
-    row = size - 1 - row;
-  }
-  if (row < 0 || row >= size) {
-    row = row < 0 ? -1 - row : 2 * size - 1 - row;
-    column = size - 1 - column;
-  }
-  return {column, row};
-}
-
 }  // namespace freepath

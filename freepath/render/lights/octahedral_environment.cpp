@@ -1,6 +1,5 @@
 #include "freepath/render/lights/octahedral_environment.h"
 
-#include <array>
 #include <numeric>
 
 #include "freepath/base/error.h"
@@ -18,10 +17,10 @@ OctahedralEnvironment::OctahedralEnvironment(const Image& image, const Vec3f& lu
   for (int row = 0; row < size_; ++row) {
     for (int column = 0; column < size_; ++column) {
       // Some spaces give blue a negative luminance, yet it is light.
-      const Vec3f mean = mean_over_texel(column, row);
+      const Vec3f& colour = radiance_[texel(column, row)];
       constexpr float kLeast = 1e-3F;
       importance[texel(column, row)] =
-          std::max(mean.dot(luminance_weights), kLeast * (mean.x + mean.y + mean.z));
+          std::max(colour.dot(luminance_weights), kLeast * (colour.x + colour.y + colour.z));
     }
   }
   const double texels = static_cast<double>(size_) * size_;
@@ -48,18 +47,6 @@ OctahedralEnvironment::OctahedralEnvironment(const Image& image, const Vec3f& lu
   for (const double value : importance) {
     pdf_.push_back(static_cast<float>(value / sum * texels / (4 * std::numbers::pi)));
   }
-}
-
-Vec3f OctahedralEnvironment::mean_over_texel(int column, int row) const {
-  // The integral of the two hat functions that meet in a pixel.
-  constexpr std::array<float, 3> kWeights{0.125F, 0.75F, 0.125F};
-  Vec3f mean(0);
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      mean += wrapped(column + dx, row + dy) * (kWeights[dx + 1] * kWeights[dy + 1]);
-    }
-  }
-  return mean;
 }
 
 }  // namespace freepath

@@ -16,10 +16,9 @@
 
 namespace freepath {
 
-/// A square image of the whole sphere, read bilinearly (pbrt-v4 reads the nearest pixel) and
-/// sampled by importance. As in ImageEnvironment a pixel is drawn with the probability of the
-/// luminance of the interpolant averaged over it, and a uniform point in it; all pixels have the
-/// same solid angle.
+/// A square image of the whole sphere, each pixel of one colour, as pbrt-v4 reads it. A pixel is
+/// drawn with the probability of its luminance, and a uniform point in it; all pixels have the same
+/// solid angle.
 class OctahedralEnvironment {
  public:
   /// @param luminance_weights of the colours' R, G and B
@@ -33,7 +32,7 @@ class OctahedralEnvironment {
     const float y = p.v * static_cast<float>(size_);
     const int column = std::clamp(static_cast<int>(x), 0, size_ - 1);
     const int row = std::clamp(static_cast<int>(y), 0, size_ - 1);
-    return {Spectrum(interpolate(x - 0.5F, y - 0.5F)), pdf_[texel(column, row)]};
+    return {Spectrum(radiance_[texel(column, row)]), pdf_[texel(column, row)]};
   }
 
   /// A direction whose density is what `evaluate` returns.
@@ -55,30 +54,6 @@ class OctahedralEnvironment {
   std::size_t texel(int column, int row) const {
     return static_cast<std::size_t>(row) * size_ + column;
   }
-  const Vec3f& wrapped(int column, int row) const {
-    const OctahedralTexel t = wrap_octahedral(column, row, size_);
-    return radiance_[texel(t.column, t.row)];
-  }
-
-  /// Bilinear interpolant at a point whose unit is the pixel, (0, 0) the centre of the first.
-  Vec3f interpolate(float x, float y) const {
-    // Not below -1, so that truncating x + 1 rounds x down.
-    const int column = static_cast<int>(x + 1.0F) - 1;
-    const int row = static_cast<int>(y + 1.0F) - 1;
-    const float fx = x - static_cast<float>(column);
-    const float fy = y - static_cast<float>(row);
-    if (column >= 0 && row >= 0 && column + 1 < size_ && row + 1 < size_) {
-      const Vec3f* upper = &radiance_[texel(column, row)];
-      const Vec3f* lower = upper + size_;
-      return (upper[0] * (1.0F - fx) + upper[1] * fx) * (1.0F - fy) +
-             (lower[0] * (1.0F - fx) + lower[1] * fx) * fy;
-    }
-    return (wrapped(column, row) * (1.0F - fx) + wrapped(column + 1, row) * fx) * (1.0F - fy) +
-           (wrapped(column, row + 1) * (1.0F - fx) + wrapped(column + 1, row + 1) * fx) * fy;
-  }
-
-  Vec3f mean_over_texel(int column, int row) const;
-
   int size_;
   std::vector<Vec3f> radiance_;
   std::vector<float> pdf_;  // [1/sr], for each pixel

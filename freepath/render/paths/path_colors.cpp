@@ -56,9 +56,28 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, const WalkSet
       depends_on_sample_ = true;
     }
   }
+  sees_rgb_ = mode == ColorMode::kSpectral && paths_per_sample_ == 1 &&
+              std::all_of(scene.media.begin(), scene.media.end(), [&](const SceneMedium& medium) {
+                return medium.is_grey(*scene.spectra);
+              });
   rgb_ = mode == ColorMode::kRgb
              ? make(first)
              : std::make_shared<const PathColors>(PathColors{scene.spectra->in_rgb(), {}});
+  make_guides();
+}
+
+void ColorFactory::make_guides() {
+  // What is made for R, G and B serves any wavelengths: a guide need not be exact, and where it
+  // does not lead, paths still go.
+  for (std::size_t i = 0; i < scene_.media.size(); ++i) {
+    std::unique_ptr<const EmissionGuide>& guide = guides_.emplace_back();
+    const std::shared_ptr<const MediumWalkers>& walkers = constant_[i];
+    if (walkers && !walkers->bound.channels.emits()) continue;
+    const bool has_rgb = walkers && mode_ == ColorMode::kRgb;
+    guide = std::make_unique<const EmissionGuide>(
+        has_rgb ? walkers->bound : scene_.media[i].bind(rgb_->spectra), scene_.origin);
+    if (!(guide->power() > 0)) guide.reset();
+  }
 }
 
 SpectrumValues ColorFactory::spectra_of_sample(uint32_t sample) const {

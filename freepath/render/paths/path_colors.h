@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "freepath/render/paths/emission_guide.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/spectra/spectrum_table.h"
 #include "freepath/transport/walker.h"
@@ -40,13 +41,19 @@ class ColorFactory {
   int paths_per_sample() const { return paths_per_sample_; }
   /// Whether samples differ in walkers, so that flights of different samples are walked apart.
   bool depends_on_sample() const { return depends_on_sample_; }
-  /// R, G, B of the scene's spectra, for pictures of albedo.
+  /// Directions towards the emission of a medium, null where there is none.
+  const EmissionGuide* guide(std::size_t medium) const { return guides_[medium].get(); }
+  /// R, G, B of the scene's spectra.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
+  /// Whether paths without colour may see lights in R, G, B: wavelengths are rendered, and no
+  /// medium tells them apart.
+  bool sees_rgb() const { return sees_rgb_; }
 
  private:
   std::shared_ptr<const MediumWalkers> make_walkers(std::size_t medium,
                                                     const SpectrumValues& spectra) const;
   std::shared_ptr<const PathColors> make(SpectrumValues spectra) const;
+  void make_guides();
   SpectrumValues spectra_of_sample(uint32_t sample) const;
 
   const PathScene& scene_;
@@ -54,9 +61,11 @@ class ColorFactory {
   WalkSettings walk_;
   int paths_per_sample_ = 1;
   bool depends_on_sample_ = false;
+  bool sees_rgb_ = false;
   /// Walkers of media that are the same at all wavelengths, null of others.
   std::vector<std::shared_ptr<const MediumWalkers>> constant_;
   std::shared_ptr<const PathColors> rgb_;
+  std::vector<std::unique_ptr<const EmissionGuide>> guides_;  // of media
 };
 
 }  // namespace freepath

@@ -26,10 +26,15 @@ struct ScenePath {
   Channels throughput;
   Channels density{1.0F};  ///< FlightStream::density of the flights so far.
   Channels radiance;
+  /// The part of the radiance that is known in R, G, B: what a throughput without colour brings of
+  /// lights, whose integral over all wavelengths is known.
+  Channels rgb;
 
   Vec3f scattered_from;  ///< Where the direction was drawn.
   float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
-  int hero = 0;   ///< The channel that decides where channels part.
+  /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
+  float emission_share = 1;
+  int hero = 0;  ///< The channel that decides where channels part.
   bool only_hero = false;
   bool is_dead = false;
 

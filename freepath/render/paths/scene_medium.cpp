@@ -170,13 +170,20 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
   return bound;
 }
 
+bool SceneMedium::is_grey(const SpectrumTable& table) const {
+  return !colors_ && std::all_of(components_.begin(), components_.end(),
+                                 [&](const SceneMediumComponent& component) {
+                                   return table.is_constant(component.sigma_a) &&
+                                          table.is_constant(component.sigma_s);
+                                 });
+}
+
 bool SceneMedium::is_constant(const SpectrumTable& table) const {
-  if (colors_) return false;
-  return std::all_of(
-      components_.begin(), components_.end(), [&](const SceneMediumComponent& component) {
-        return !component.temperature && table.is_constant(component.sigma_a) &&
-               table.is_constant(component.sigma_s) && table.is_constant(component.radiance);
-      });
+  return is_grey(table) && std::all_of(components_.begin(), components_.end(),
+                                       [&](const SceneMediumComponent& component) {
+                                         return !component.temperature &&
+                                                table.is_constant(component.radiance);
+                                       });
 }
 
 Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {

@@ -69,7 +69,9 @@ class SceneMedium {
   /// Its cross sections in the channels of these spectra.
   BoundMedium bind(const SpectrumValues& spectra) const;
 
-  /// Whether its cross sections and emission are the same at all wavelengths.
+  /// Whether its cross sections are the same at all wavelengths.
+  bool is_grey(const SpectrumTable& table) const;
+  /// Whether its emission is, too.
   bool is_constant(const SpectrumTable& table) const;
 
   const std::string& name() const { return name_; }

@@ -13,9 +13,6 @@ constexpr float kLargestThroughput = 1e28F;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Light on a surface is not shadowed by that surface itself.
-constexpr float kShadowLength = 1 - 1e-4F;
-
 // Dimensions of SampleSequence.
 constexpr uint32_t kFilmDimension = 0;
 constexpr uint32_t kLensDimension = 1;
@@ -35,7 +32,8 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
       scene_(*setup.scene),
       paths_(setup.slots),
       batches_(setup.slots, true),
-      shadows_(*setup.scene, setup.slots) {}
+      shadows_(*setup.scene, setup.slots),
+      emissions_(*setup.scene, setup.slots) {}
 
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples, PathSample{});
@@ -52,6 +50,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
     if (stop && stop()) return false;
     fly();
     shadows_.trace(paths_, job_counts_.shadow_rays);
+    emissions_.trace(paths_, job_counts_.free_paths);
     for (std::size_t slot = 0; slot < active_;) {
       if (!paths_[slot].is_dead) {
         ++slot;
@@ -174,13 +173,13 @@ void SceneWavefront::take_flight(std::size_t slot, const Walker& walker, std::si
   const int channels = walker.channels();
   if (weighted) {
     for (int c = 0; c < channels; ++c) {
-      path.radiance[c] += flights_.emitted[c][i];
+      path.radiance[c] += flights_.emitted[c][i] * path.emission_share;
       path.throughput[c] = flights_.weight[c][i];
       path.density[c] = flights_.density[c][i];
     }
   } else {
     // A walker of one channel serves all, or the only one that there is.
-    path.radiance += path.throughput * flights_.emitted[0][i];
+    path.radiance += path.throughput * (flights_.emitted[0][i] * path.emission_share);
     path.throughput *= flights_.weight[0][i];
   }
   if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
@@ -216,158 +215,17 @@ void SceneWavefront::escape(ScenePath& path) {
                               : path.throughput[path.channel]);
     if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
   }
+  const bool in_rgb = sees_rgb(path);
   const LightSeen light =
-      scene_.lights->escape(path.scattered_from, path.direction, path.colors->spectra);
+      scene_.lights->escape(path.scattered_from, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
   const Channels seen = path.throughput * light.radiance * share;
-  if (layers_.on() && path.scatterings == 0) layers_.background(path.result, rgb_of(path, seen));
-  path.radiance += seen;
-}
-
-void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
-  path.origin = origin;
-  path.direction = direction;
-  path.hit.reset();
-  path.surfaces_known = false;
-  ++path.flights;
-}
-
-void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) const {
-  path.medium = medium_beyond(scene_.shapes[hit.point.shape], !hit.from_inside, path.medium);
-  if (path.scatterings == 0) path.distance += hit.t;
-  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, path.direction), path.direction);
-}
-
-void SceneWavefront::meet_surface(std::size_t slot) {
-  ScenePath& path = paths_[slot];
-  const SurfaceHit& hit = *path.hit;
-  const PathShape& shape = scene_.shapes[hit.point.shape];
-  if (shape.light) {
-    const LightSeen light =
-        path.pdf > 0
-            ? scene_.lights->hit(path.scattered_from, *shape.light, hit.point, path.colors->spectra)
-            : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction,
-                                               path.colors->spectra),
-                        0};
-    const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-    path.radiance += path.throughput * light.radiance * share;
+  if (layers_.on() && path.scatterings == 0) {
+    layers_.background(path.result,
+                       rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
   }
-  if (!shape.material) {
-    const SurfaceHit crossed = hit;  // which goes with the ray
-    cross_boundary(path, crossed);
-    return;
-  }
-  scatter_at_surface(slot);
-}
-
-bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
-  if (path.scatterings > setup_.max_scatterings) return false;
-  const float throughput = largest_magnitude(path.throughput);
-  if (throughput >= setup_.roulette_threshold) return true;
-  const float survival = throughput / setup_.roulette_threshold;
-  if (random.uniform() >= survival) return false;
-  path.throughput *= 1.0F / survival;
-  return true;
-}
-
-void SceneWavefront::scatter_at_surface(std::size_t slot) {
-  ScenePath& path = paths_[slot];
-  const SurfaceHit hit = *path.hit;
-  const PathShape& shape = scene_.shapes[hit.point.shape];
-  const Material& material = scene_.materials[*shape.material];
-  if (layers_.on()) {
-    layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance));
-  }
-  if (path.scatterings++ == 0) {
-    const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
-    record_event(path, hit.t, material.albedo(hit.point, path.direction, context),
-                 hit.point.shading_normal);
-    if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
-    path.sample.alpha = 1;
-  }
-  RandomStream random(setup_.seed, path.pixel, path.sample_key,
-                      stream_number(StreamPurpose::kScatter, path.flights));
-  if (!survives(path, random)) {
-    path.is_dead = true;
-    return;
-  }
-  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
-  const Vec3f position = hit.point.position;
-  const auto side = [&](const Vec3f& direction) {
-    return medium_beyond(shape, direction.dot(hit.point.normal) < 0, path.medium);
-  };
-  if (!material.is_specular() && !scene_.lights->is_dark()) {
-    const float u0 = random.uniform();
-    const float u1 = random.uniform();
-    const float u2 = random.uniform();
-    const LightDraw light = scene_.lights->sample(position, path.colors->spectra, u0, u1, u2);
-    if (light.pdf > 0) {
-      const MaterialValue f =
-          material.evaluate(hit.point, path.direction, light.direction, random, context);
-      const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
-      const Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
-      if (!is_black(radiance)) {
-        shadows_.add(static_cast<uint32_t>(slot),
-                     scene_.surfaces->offset_ray_origin(hit.point, light.direction),
-                     light.direction, light.distance * kShadowLength, side(light.direction),
-                     radiance);
-      }
-    }
-  }
-  const auto next = material.sample(hit.point, path.direction, random, context);
-  if (!next || is_black(next->weight)) {
-    path.is_dead = true;
-    return;
-  }
-  path.throughput *= next->weight;
-  path.only_hero = path.only_hero || next->hero_only;
-  path.pdf = next->specular ? 0.0F : next->pdf;
-  path.scattered_from = position;
-  path.medium = side(next->direction);
-  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, next->direction), next->direction);
-}
-
-void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
-  ScenePath& path = paths_[slot];
-  const SceneMedium& medium = scene_.media[path.medium];
-  if (layers_.on()) {
-    layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance));
-  }
-  if (path.scatterings++ == 0) {
-    record_event(path, t, medium.albedo(component, setup_.factory->rgb()), -path.direction);
-    path.sample.alpha = 1;
-  }
-  RandomStream random(setup_.seed, path.pixel, path.sample_key,
-                      stream_number(StreamPurpose::kScatter, path.flights));
-  if (!survives(path, random)) {
-    path.is_dead = true;
-    return;
-  }
-  const Vec3f position = path.origin + path.direction * t;
-  const PhaseFunction& phase = medium.phase(component);
-  if (!scene_.lights->is_dark()) {
-    const float u0 = random.uniform();
-    const float u1 = random.uniform();
-    const float u2 = random.uniform();
-    const LightDraw light = scene_.lights->sample(position, path.colors->spectra, u0, u1, u2);
-    if (light.pdf > 0) {
-      // The phase function is its own density.
-      const float value = phase.evaluate(path.direction, light.direction);
-      const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
-      const Channels radiance = path.throughput * light.radiance * share;
-      if (!is_black(radiance)) {
-        shadows_.add(static_cast<uint32_t>(slot), position, light.direction,
-                     light.distance * kShadowLength, path.medium, radiance);
-      }
-    }
-  }
-  const float u1 = random.uniform();
-  const float u2 = random.uniform();
-  const PhaseSample next = phase.sample(path.direction, u1, u2);
-  path.pdf = next.pdf;
-  path.scattered_from = position;
-  go_on(path, position, next.direction);
+  (in_rgb ? path.rgb : path.radiance) += seen;
 }
 
 void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albedo,
@@ -381,8 +239,10 @@ void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albe
                 1.0F / static_cast<float>(setup_.factory->paths_per_sample()));
 }
 
-Spectrum SceneWavefront::rgb_of(const ScenePath& path, const Channels& radiance) const {
-  return to_spectrum(path.colors->spectra.to_rgb(radiance) * scene_.exposure_scale);
+Spectrum SceneWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
+                                const Channels& rgb) const {
+  const Vec3f sum = path.colors->spectra.to_rgb(radiance) + Vec3f(rgb[0], rgb[1], rgb[2]);
+  return to_spectrum(sum * scene_.exposure_scale);
 }
 
 Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
@@ -395,11 +255,11 @@ Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
 void SceneWavefront::finish(ScenePath& path) {
   PathSample& sample = results_[path.result];
   sample.lookups += static_cast<float>(path.lookups);
-  if (!is_finite(path.radiance)) {
+  if (!is_finite(path.radiance) || !is_finite(path.rgb)) {
     ++job_counts_.overflows;
     return;
   }
-  const Spectrum radiance = rgb_of(path, path.radiance);
+  const Spectrum radiance = rgb_of(path, path.radiance, path.rgb);
   sample.radiance += radiance;
   if (layers_.on()) layers_.end(path.result, path.scatterings, radiance);
   const auto share = 1.0F / static_cast<float>(setup_.factory->paths_per_sample());

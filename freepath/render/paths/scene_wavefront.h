@@ -10,6 +10,7 @@
 #include "freepath/render/film.h"
 #include "freepath/render/layer_recorder.h"
 #include "freepath/render/path_wavefront.h"
+#include "freepath/render/paths/emission_tracer.h"
 #include "freepath/render/paths/path_colors.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/paths/path_state.h"
@@ -26,6 +27,8 @@ struct SceneSetup {
   uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
   /// Russian roulette is played where no channel's throughput reaches this.
   float roulette_threshold = 0.25F;
+  /// Whether scatterings in emissive media also look for their light along lines of its own.
+  bool samples_emission = true;
   std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
   /// Of the samples of a pass, from first_sample on.
   std::vector<std::shared_ptr<const PathColors>> colors;
@@ -54,16 +57,26 @@ class SceneWavefront {
   bool needs_surfaces_first(const ScenePath& path) const;
   void find_surface(ScenePath& path) const;
 
+  /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
+  bool sees_rgb(const ScenePath& path) const;
+  const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
   void escape(ScenePath& path);
   void meet_surface(std::size_t slot);
   void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
   void scatter_at_surface(std::size_t slot);
   void scatter_in_medium(std::size_t slot, float t, std::size_t component);
+  /// Null where the flights of paths find all that a medium emits.
+  const EmissionGuide* guide_of(MediumId medium) const {
+    return setup_.samples_emission ? setup_.factory->guide(medium) : nullptr;
+  }
+  void draw_emission(std::size_t slot, const EmissionGuide& guide, const Vec3f& position,
+                     const PhaseFunction& phase, RandomStream& random);
   /// @return false if the path has ended
   bool survives(ScenePath& path, RandomStream& random) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal);
-  Spectrum rgb_of(const ScenePath& path, const Channels& radiance) const;
+  /// R, G, B on the film of both parts of a radiance.
+  Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
   Spectrum transmittance_of(const ScenePath& path) const;
   void finish(ScenePath& path);
 
@@ -74,6 +87,7 @@ class SceneWavefront {
   WalkBatches batches_;
   FlightStream flights_;
   ShadowTracer shadows_;
+  EmissionTracer emissions_;
   std::vector<PathSample> results_;
   LayerRecorder layers_;  // of the results
   PixelWindow window_;    // of the film at work

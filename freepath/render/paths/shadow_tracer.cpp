@@ -76,7 +76,10 @@ void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statisti
       paths[shadow.owner].lookups += flights_.lookups[i];
     }
   }
-  for (const Shadow& shadow : shadows_) paths[shadow.owner].radiance += shadow.radiance;
+  for (const Shadow& shadow : shadows_) {
+    ScenePath& path = paths[shadow.owner];
+    (shadow.is_rgb ? path.rgb : path.radiance) += shadow.radiance;
+  }
   shadows_.clear();
 }
 

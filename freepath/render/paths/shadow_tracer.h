@@ -22,9 +22,10 @@ class ShadowTracer {
   /// Adds a ray.
   /// @param owner of PathState, whose radiance it is to add to
   /// @param radiance what it adds if nothing is in between
+  /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
   void add(uint32_t owner, const Vec3f& origin, const Vec3f& direction, float distance,
-           MediumId medium, const Channels& radiance) {
-    shadows_.push_back({origin, direction, distance, medium, radiance, owner});
+           MediumId medium, const Channels& radiance, bool is_rgb) {
+    shadows_.push_back({origin, direction, distance, medium, radiance, owner, is_rgb});
   }
 
   /// Traces all rays, adds to their paths, and forgets them.
@@ -37,6 +38,7 @@ class ShadowTracer {
     MediumId medium;
     Channels radiance;
     uint32_t owner;
+    bool is_rgb;
   };
 
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/scene/build/build_media.h"
+#include "freepath/transport/auto_tracker.h"
+#include "freepath/transport/walker.h"
 
 namespace freepath {
 namespace {
@@ -86,6 +89,19 @@ std::optional<Crop> read_crop(BuildContext& context, const ParameterList& list,
   return crop;
 }
 
+/// How long the shutter is open.
+float exposure_time(const BuildContext& context) {
+  if (!context.pbrt.camera) return 1;
+  const ParameterList& camera = context.pbrt.camera->parameters;
+  const double open = camera.get_float("shutteropen", 0);
+  const double close = camera.get_float("shutterclose", 1);
+  if (!(close > open)) {
+    fail_at(camera.location_of("shutterclose"),
+            "the shutter opens at {} and closes at {}: no light would reach the film", open, close);
+  }
+  return static_cast<float>(close - open);
+}
+
 void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) {
   if (!context.pbrt.film) return;
   const PbrtEntity& film = *context.pbrt.film;
@@ -114,16 +130,8 @@ void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) 
                                          "observer 'cie1931'",
                                          in_quotes(sensor)));
   }
-  double shutter = 1;
-  if (context.pbrt.camera) {
-    const ParameterList& camera = context.pbrt.camera->parameters;
-    shutter = camera.get_float("shutterclose", 1) - camera.get_float("shutteropen", 0);
-  }
-  picture.exposure_scale = static_cast<float>(shutter * iso / 100);
-  if (!(picture.exposure_scale > 0)) {
-    fail_at(film.location, "the exposure, iso / 100 times the time that the shutter is open, is {}",
-            picture.exposure_scale);
-  }
+  if (!(iso > 0)) fail_at(list.location_of("iso"), "'iso' is {}: it must be more than 0", iso);
+  picture.exposure_scale *= static_cast<float>(iso / 100);
   warn_if_given(context, list, "maxcomponentvalue",
                 "is left out: to clip samples would bias the picture");
   picture.all_layers = film.type == "gbuffer";
@@ -148,16 +156,37 @@ void read_sampler(BuildContext& context, PictureSettings& picture) {
         sampler.location,
         fmt::format("the sampler '{}' is the one of padded Sobol' points here", sampler.type));
   }
-  int samples = list.get_integer("pixelsamples", 16);
+  const auto count = [&](std::string_view name, int otherwise) {
+    const int samples = list.get_integer(name, otherwise);
+    if (samples < 1) {
+      fail_at(list.location_of(name), "'{}' is {}: there have to be samples", name, samples);
+    }
+    return static_cast<int64_t>(samples);
+  };
+  int64_t samples = 0;
   if (sampler.type == "stratified") {
-    samples = list.get_integer("xsamples", 4) * list.get_integer("ysamples", 4);
+    samples = count("xsamples", 4) * count("ysamples", 4);
     pass_over(list, {"jitter"});
+  } else {
+    samples = count("pixelsamples", 16);
   }
-  if (samples < 1) fail_at(sampler.location, "there have to be samples, not {}", samples);
+  if (samples > std::numeric_limits<int>::max()) {
+    fail_at(sampler.location, "{} samples of a pixel are too many", samples);
+  }
   picture.samples = static_cast<uint32_t>(samples);
   picture.seed = static_cast<uint64_t>(list.get_integer("seed", static_cast<int>(picture.seed)));
   pass_over(list, {"randomization"});
   list.report_unused(context.diagnostics);
+}
+
+/// A tracker or estimator with its options; empty where none is named.
+std::string method_name(const ParameterList& list, std::string_view name,
+                        std::span<const MethodInfo> known) {
+  const std::string text = list.get_string(name, "");
+  if (!text.empty() && text != kAutoTracker) {
+    at_location(list.location_of(name), [&] { return parse_method(text, known); });
+  }
+  return text;
 }
 
 void read_integrator(BuildContext& context, PictureSettings& picture) {
@@ -176,9 +205,16 @@ void read_integrator(BuildContext& context, PictureSettings& picture) {
     context.diagnostics.warn(list.location_of("regularize"),
                              "'regularize' is left out: it would bias the picture");
   }
-  picture.tracker = list.get_string("tracker", "");
-  picture.transmittance = list.get_string("transmittance", "");
+  picture.tracker = method_name(list, "tracker", tracker_infos());
+  picture.transmittance = method_name(list, "transmittance", transmittance_infos());
   picture.interpolation = list.get_string("interpolation", "");
+  constexpr std::string_view kInterpolations[] = {"", "nearest", "stochastic", "trilinear"};
+  if (std::find(std::begin(kInterpolations), std::end(kInterpolations), picture.interpolation) ==
+      std::end(kInterpolations)) {
+    fail_at(list.location_of("interpolation"),
+            "there is no interpolation {}; known are nearest, stochastic, trilinear",
+            in_quotes(picture.interpolation));
+  }
   pass_over(list, {"lightsampler"});
   list.report_unused(context.diagnostics);
 }
@@ -274,6 +310,7 @@ PictureSettings build_picture(BuildContext& context, FilmSize& size) {
     context.diagnostics.warn(option->location,
                              fmt::format("the option '{}' is left out", option->name));
   }
+  picture.exposure_scale = exposure_time(context);
   read_film(context, size, picture);
   read_sampler(context, picture);
   read_integrator(context, picture);

@@ -84,6 +84,7 @@ SpectralDistribution distribution_of(BuildContext& context, const SpectrumValue&
 fs::path file_of(const BuildContext& context, const ParameterList& list, std::string_view name) {
   const std::string text = list.get_string(name, "");
   const SourceLocation& location = list.location_of(name);
+  if (!list.type_of(name)) fail_at(location, "'{}' is missing: the file to read", name);
   const fs::path path(text);
   const fs::path candidates[] = {fs::path(*location.file).parent_path() / path,
                                  fs::path(context.pbrt.file).parent_path() / path};

@@ -204,6 +204,7 @@ class MediumReader {
 
   std::shared_ptr<const Field> voxels(const Layout& layout, std::string_view name) {
     const std::span<const double> values = list_.get_floats(name);
+    if (values.empty()) fail("a grid needs '{}', a number for each voxel", name);
     check_count(name, values.size(), layout.voxels());
     BrickMapBuilder builder(Vec3i(0), layout.counts - Vec3i(1), 0);
     std::size_t i = 0;
@@ -337,6 +338,12 @@ class MediumReader {
     component.density = density;
     component.sigma_s = Spectrum(static_cast<float>(largest_ * values.scale));
     Medium medium({component});
+    const std::vector<float>& maxima = medium.super_voxels().maxima;
+    const float densest = maxima.empty() ? 0 : *std::max_element(maxima.begin(), maxima.end());
+    if (!std::isfinite(densest * component.sigma_s[0])) {
+      fail("the extinction, a density of {} times {}, is too large for a float", densest,
+           largest_ * values.scale);
+    }
     return std::make_shared<const Medium>(clipped ? medium.clipped_to_voxels() : std::move(medium));
   }
 

@@ -113,34 +113,28 @@ class ShapeBuilder {
     path_shape.inside = medium_of(context_, shape.inside_medium);
     path_shape.outside = medium_of(context_, shape.outside_medium);
     read_alpha(shape);
-    const auto number = static_cast<uint32_t>(built_.shapes.size());
-    const bool boundary = !path_shape.material && !shape.area_light;
-    uint32_t first_primitive = 0;
+    const bool boundary = !path_shape.material;
+    const bool shines = shape.area_light && !boundary && !shape.object;
+    if (shape.area_light && !shines) {
+      context_.diagnostics.warn(shape.location,
+                                boundary ? "an 'interface' is no light: this one stays dark"
+                                         : "shapes of objects are no lights: this one stays dark");
+    }
     for (ShapeGeometry& geometry : read_geometry(context_, shape)) {
-      SurfaceShape surface{std::move(geometry),
-                           shape.world_from_object.start,
-                           shape.reverse_orientation,
-                           boundary,
-                           number,
-                           first_primitive};
+      // Each part of a file is a shape of its own, for it is a light of its own.
+      const auto number = static_cast<uint32_t>(built_.shapes.size());
+      SurfaceShape surface{std::move(geometry), shape.world_from_object.start,
+                           shape.reverse_orientation, boundary, number};
       check(surface);
-      first_primitive += primitive_count(surface.geometry);
-      if (shape.object) {
-        if (shape.area_light) {
-          context_.diagnostics.warn(shape.location,
-                                    "shapes of objects are no lights: this one stays dark");
-        }
-        built_.surfaces.groups[*shape.object].push_back(std::move(surface));
-        continue;
-      }
-      if (shape.area_light) {
+      if (shines) {
         path_shape.light = static_cast<uint32_t>(built_.emitters.size());
         built_.emitters.push_back(
             {built_.surfaces.shapes.size(), static_cast<uint32_t>(*shape.area_light), number});
       }
-      built_.surfaces.shapes.push_back(std::move(surface));
+      built_.shapes.push_back(path_shape);
+      auto& place = shape.object ? built_.surfaces.groups[*shape.object] : built_.surfaces.shapes;
+      place.push_back(std::move(surface));
     }
-    built_.shapes.push_back(path_shape);
   }
 
   void read_alpha(const PbrtShape& shape) {

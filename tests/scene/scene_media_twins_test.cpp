@@ -1,0 +1,191 @@
+// Media that are told in two ways give the same picture.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "freepath/io/volume_write.h"
+#include "tests/scene/twin_scenes.h"
+
+namespace freepath::testing {
+namespace {
+
+const std::string kSigmas =
+    "\"rgb sigma_a\" [ .2 .2 .2 ] \"rgb sigma_s\" [ 2 2 2 ] \"float g\" 0.3 ";
+
+std::string homogeneous(const std::string& name, const std::string& parameters = kSigmas) {
+  return "MakeNamedMedium \"" + name + "\" \"string type\" \"homogeneous\" " + parameters + "\n";
+}
+
+TEST(SceneTwins, UniformGridOfOneValueIsHomogeneous) {
+  std::string ones;
+  for (int i = 0; i < 27; ++i) ones += "1 ";
+  // The box ends at the centres of the outer voxels, beyond which a grid fades.
+  const std::string box = medium_box("m", Vec3d(-1), Vec3d(1));
+  expect_twins("grid",
+               stage("MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" " + kSigmas +
+                     "\"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 3 "
+                     "\"point3 p0\" [ -1.5 -1.5 -1.5 ] \"point3 p1\" [ 1.5 1.5 1.5 ] "
+                     "\"float density\" [ " +
+                     ones + "]\n" + box),
+               stage(homogeneous("m") + box));
+}
+
+/// Voxels of a box of 6 x 5 x 7 cubes of side 0.4 around the origin, of which the outer ones are
+/// empty.
+const Vec3i kCounts(6, 5, 7);
+const Vec3d kLow(-1.2, -1, -1.4);
+constexpr double kEdge = 0.4;
+
+float lump(const Vec3i& voxel) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (voxel[axis] == 0 || voxel[axis] == kCounts[axis] - 1) return 0;
+  }
+  return static_cast<float>((voxel.x * 5 + voxel.y * 3 + voxel.z * 7) % 4);
+}
+
+template <class Visit>
+void for_each_voxel(const Visit& visit) {
+  for (int z = 0; z < kCounts.z; ++z) {
+    for (int y = 0; y < kCounts.y; ++y) {
+      for (int x = 0; x < kCounts.x; ++x) visit(Vec3i(x, y, z));
+    }
+  }
+}
+
+std::string lumpy_grid() {
+  std::string values;
+  for_each_voxel([&](const Vec3i& voxel) { values += std::to_string(lump(voxel)) + " "; });
+  return "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" " + kSigmas +
+         "\"integer nx\" 6 \"integer ny\" 5 \"integer nz\" 7 \"point3 p0\" [ -1.2 -1 -1.4 ] "
+         "\"point3 p1\" [ 1.2 1 1.4 ] \"float density\" [ " +
+         values + "]\n";
+}
+
+/// Around all voxels, so that the boundary need not be traced.
+const std::string kFarBox = medium_box("m", Vec3d(-1.5, -1.5, -1.7), Vec3d(1.5, 1.5, 1.7));
+
+TEST(SceneTwins, UniformGridIsTheVolumeOfAFile) {
+  BrickMapBuilder builder(Vec3i(0), kCounts - Vec3i(1), 0);
+  for_each_voxel([&](const Vec3i& voxel) { builder.set_voxel(voxel, lump(voxel)); });
+  Field field{"density", std::move(builder).finish(), Matrix4d()};
+  field.index_to_world.setScale(Vec3d(kEdge));
+  for (int axis = 0; axis < 3; ++axis) {
+    field.index_to_world[3][axis] = kLow[axis] + 0.5 * kEdge;
+  }
+  const TemporaryFile file("lumps.vdb");
+  const Field* const fields[] = {&field};
+  write_vdb(file.path(), fields);
+  expect_twins("file", stage(lumpy_grid() + kFarBox),
+               stage("MakeNamedMedium \"m\" \"string type\" \"openvdb\" " + kSigmas +
+                     "\"string filename\" \"" + file.path().string() + "\"\n" + kFarBox));
+}
+
+// Where the boundary passes through voxels it stays, even if these are empty.
+TEST(SceneTwins, BoundaryThatNeedNotBeTracedIsAsOneThatIs) {
+  const std::string tight = medium_box("m", kLow + Vec3d(0.05), -kLow - Vec3d(0.05));
+  const std::string sphere =
+      "AttributeBegin Translate 0.2 0.9 -2.1 Material \"diffuse\" Shape \"sphere\" \"float "
+      "radius\" 0.3 AttributeEnd\n";
+  const std::string a = stage(lumpy_grid() + kFarBox + sphere);
+  const std::string b = stage(lumpy_grid() + tight + sphere);
+  Diagnostics diagnostics;
+  const BuiltScene without = build_scene(parse(a, diagnostics), diagnostics);
+  const BuiltScene with = build_scene(parse(b, diagnostics), diagnostics);
+  ASSERT_TRUE(without.scene.is_clear[0]);
+  ASSERT_FALSE(with.scene.is_clear[0]);
+  expect_twins("boundary", a, b);
+}
+
+/// A bubble around the camera, too small to be seen.
+TEST(SceneTwins, CameraInAMediumIsAsInABubbleOfIt) {
+  const std::string camera =
+      "LookAt 0.2 0.1 -0.5  0 0 1  0 1 0\n{}Camera \"perspective\" \"float fov\" 70\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [ .3 .3 .3 ]\n"
+      "LightSource \"point\" \"rgb I\" [ 2 2 2 ] \"point3 from\" [ -2 1 2 ]\n";
+  const std::string fog = homogeneous("m") + medium_box("m", Vec3d(-1), Vec3d(1));
+  expect_twins("bubble",
+               kUnlimited + film() + homogeneous("m") +
+                   fmt::format(fmt::runtime(camera), "MediumInterface \"\" \"m\"\n") +
+                   medium_box("m", Vec3d(-1), Vec3d(1)),
+               kUnlimited + film() + fmt::format(fmt::runtime(camera), "") + fog +
+                   "AttributeBegin Translate 0.2 0.1 -0.5 Material \"interface\" "
+                   "MediumInterface \"\" \"m\" Shape \"sphere\" \"float radius\" 1e-4 "
+                   "AttributeEnd\n",
+               256, {.absolute = 3e-4, .largest_relative_error = 0.01});
+}
+
+TEST(SceneTwins, MediumWithinTheSameMediumIsNotSeen) {
+  const std::string outer = homogeneous("m") + medium_box("m", Vec3d(-1), Vec3d(1));
+  expect_twins("nested", stage(outer),
+               stage(outer + homogeneous("n") +
+                     medium_box("n", Vec3d(-0.8, -0.3, -0.9), Vec3d(0.4, 0.9, 0.5), "m")));
+}
+
+// What is within a medium replaces it.
+TEST(SceneTwins, NestedMediaAbsorbAsTheirLengths) {
+  const std::string scene =
+      film() +
+      "LookAt 0 0 -9  0 0 0  0 1 0\n"
+      "Camera \"orthographic\" \"float screenwindow\" [ -.01 .01 -.01 .01 ]\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" +
+      homogeneous("a", "\"rgb sigma_a\" [ .3 .3 .3 ] \"rgb sigma_s\" [ 0 0 0 ]") +
+      homogeneous("b", "\"rgb sigma_a\" [ .9 .9 .9 ] \"rgb sigma_s\" [ 0 0 0 ]") +
+      medium_box("a", Vec3d(-1), Vec3d(1)) + medium_box("b", Vec3d(-0.5), Vec3d(0.5), "a") +
+      medium_box("", Vec3d(-0.3), Vec3d(0.1), "b");
+  const double expected = std::exp(-(0.3 * 1 + 0.9 * 0.6));
+  expect_mean("nested", render_text(scene, {.samples = 1024}), {expected, expected, expected});
+}
+
+/// Everything that has no colour.
+TEST(SceneTwins, GreySceneIsTheSameInWavelengths) {
+  const std::string scene =
+      stage(lumpy_grid() + kFarBox +
+            "AttributeBegin Translate 1 -0.8 -1.6 Material \"dielectric\" Shape \"sphere\" "
+            "\"float radius\" 0.3 AttributeEnd\n"
+            "AttributeBegin Translate -1.2 0.6 -1.6 Material \"conductor\" \"rgb reflectance\" "
+            "[ .8 .8 .8 ] \"float roughness\" 0.2 Shape \"sphere\" \"float radius\" 0.3 "
+            "AttributeEnd\n");
+  expect_alike("modes", render_text(scene, {.samples = 1024}),
+               render_text(scene, {.mode = ColorMode::kSpectral, .samples = 1024, .seed = 3}));
+}
+
+class SceneTrackers : public ::testing::TestWithParam<const char*> {};
+
+// One medium whose extinction has a colour, seen through another that is grey.
+std::string coloured_scene(const std::string& methods) {
+  return stage(homogeneous("m", "\"rgb sigma_a\" [ .1 .3 .5 ] \"rgb sigma_s\" [ 1 .6 .4 ]") +
+                   medium_box("m", Vec3d(-0.2, -1, -1), Vec3d(1)) + homogeneous("n") +
+                   medium_box("n", Vec3d(-1), Vec3d(-0.4, 1, 1)),
+               "Integrator \"volpath\" \"integer maxdepth\" 8 " + methods + "\n");
+}
+
+TEST_P(SceneTrackers, AgreeWithOnePathForEachChannel) {
+  static const std::vector<Picture> references = [] {
+    std::vector<Picture> pictures;
+    for (const ColorMode mode : kColorModes) {
+      pictures.push_back(render_text(coloured_scene("\"string tracker\" \"delta\""),
+                                     {.mode = mode, .samples = 256}));
+    }
+    return pictures;
+  }();
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const Picture picture = render_text(coloured_scene(GetParam()),
+                                        {.mode = kColorModes[i], .samples = 128, .seed = 77});
+    expect_alike(name_of(kColorModes[i]), picture, references[i],
+                 {.absolute = 2e-5, .largest_relative_error = 0.01});
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SceneTrackers,
+    ::testing::Values("\"string tracker\" \"spectral\"", "\"string tracker\" \"weighted-delta\"",
+                      "\"string tracker\" \"weighted-delta:energy-partitioning=yes\"",
+                      "\"string tracker\" \"per-wavelength\"",
+                      "\"string tracker\" \"hero-wavelength\"",
+                      "\"string tracker\" \"spectral-decomposition\"",
+                      "\"string tracker\" \"spectral\" \"string transmittance\" \"next-flight\""));
+
+}  // namespace
+}  // namespace freepath::testing
