@@ -115,7 +115,7 @@ class PathWavefront {
 
   const PathSetup& setup_;
   std::vector<PhaseFunction> phases_;  // of the components
-  std::vector<Spectrum> albedos_;         // of the components
+  std::vector<Spectrum> albedos_;      // of the components
   std::vector<Path> paths_in_flight_;
   RayStream rays_;
   FlightStream flights_;

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "freepath/base/spectrum.h"
-#include "freepath/base/vector.h"
 #include "freepath/base/tangent_frame.h"
+#include "freepath/base/vector.h"
 #include "freepath/render/up_axis.h"
 
 namespace freepath {

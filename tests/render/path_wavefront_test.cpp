@@ -20,7 +20,8 @@ struct Stage {
   explicit Stage(const Spectrum& sigma_s)
       : medium({Component{.density = make_field(Vec3i(-8), Vec3i(7), hash_noise),
                           .sigma_a = Spectrum(0.01F),
-                          .sigma_s = sigma_s}}),
+                          .sigma_s = sigma_s,
+                          .phase = {}}}),
         camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kWidth, kHeight),
         lights(ConstantEnvironment(Spectrum(1.0F))) {
     setup.medium = &medium;
