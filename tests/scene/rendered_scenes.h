@@ -52,12 +52,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.batch = options.batch;
   settings.max_scatterings = built.picture.max_scatterings;
   settings.walk.seed = options.seed;
-  const SpectrumValues rgb = built.scene.spectra->in_rgb();
-  const auto& media = built.scene.media;
-  const bool grey = std::all_of(media.begin(), media.end(), [&](const SceneMedium& medium) {
-    return medium.bind(rgb).channels.has_grey_extinction();
-  });
-  settings.walk.tracker = grey ? "delta" : "spectral";
+  settings.walk.tracker = standard_tracker(built.scene);
   if (!built.picture.tracker.empty()) settings.walk.tracker = built.picture.tracker;
   if (!built.picture.transmittance.empty()) {
     settings.walk.transmittance = built.picture.transmittance;
