@@ -203,9 +203,8 @@ TEST_F(DisplayTest, ThatIsNotThereIsWarnedOf) {
 
 TEST_F(DisplayTest, ThatGoesAwayIsWarnedOfOnce) {
   Viewer viewer(100);
-  const Outcome outcome =
-      run("render ball.vdb --size 640x480 --spp 5 -o picture.exr --display 127.0.0.1:" +
-          viewer.port());
+  const Outcome outcome = run(
+      "render ball.vdb --size 640x480 --spp 5 -o picture.exr --display 127.0.0.1:" + viewer.port());
   EXPECT_EQ(outcome.status, 0) << outcome;
   const std::size_t first = outcome.messages.find("warning: --display: lost the viewer");
   ASSERT_NE(first, std::string::npos) << outcome;
@@ -214,7 +213,8 @@ TEST_F(DisplayTest, ThatGoesAwayIsWarnedOfOnce) {
 }
 
 TEST_F(DisplayTest, RefusesWhatIsNoAddress) {
-  for (const char* wrong : {"host:", "host:0", "host:65536", "host:port", "[::1", "[]:1", "[::1]1"}) {
+  for (const char* wrong :
+       {"host:", "host:0", "host:65536", "host:port", "[::1", "[]:1", "[::1]1"}) {
     const Outcome outcome = render(std::string("--display ") + wrong);
     EXPECT_NE(outcome.status, 0) << wrong;
     EXPECT_NE(outcome.messages.find("HOST:PORT"), std::string::npos) << wrong << '\n' << outcome;

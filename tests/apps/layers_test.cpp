@@ -94,8 +94,7 @@ TEST_F(LayersTest, PartsOfTheLightOfASceneAddUp) {
                           "--color spectral --tracker delta"}) {
     SCOPED_TRACE(how);
     const Image all = render("fog.pbrt --layers all " + std::string(how));
-    const Image single =
-        render("fog.pbrt --layers all --max-scatterings 1 " + std::string(how));
+    const Image single = render("fog.pbrt --layers all --max-scatterings 1 " + std::string(how));
     double indirect = 0;
     for (std::size_t i = 0; i < all.pixel_count(); ++i) {
       for (const std::string c : {"R", "G", "B"}) {
@@ -114,7 +113,8 @@ TEST_F(LayersTest, PartsOfTheLightOfASceneAddUp) {
 }
 
 TEST_F(LayersTest, OfASceneMeanWhatTheyAreCalled) {
-  for (const char* how : {"--color rgb", "--color spectral --spp 64", "--color rgb --tracker delta"}) {
+  for (const char* how :
+       {"--color rgb", "--color spectral --spp 64", "--color rgb --tracker delta"}) {
     SCOPED_TRACE(how);
     const Image image = render("fog.pbrt --layers all " + std::string(how));
     // Beside the fog there is nothing but what is around.

@@ -24,7 +24,8 @@ Medium glowing_cube(const Spectrum& sigma_s) {
   Matrix4d eighths;
   eighths.setScale(Vec3d(0.125));
   Component component;
-  component.density = make_field(Vec3i(-8), Vec3i(7), [](const Vec3i&) { return 1.0F; }, eighths);
+  component.density = make_field(
+      Vec3i(-8), Vec3i(7), [](const Vec3i&) { return 1.0F; }, eighths);
   component.sigma_a = Spectrum(0.3F);
   component.sigma_s = sigma_s;
   component.emission = Spectrum(2.0F, 1.0F, 0.5F);
@@ -76,8 +77,7 @@ TEST(Layers, PartsOfTheLightAddUpForEveryKindOfPath) {
         settings.walk.tracker = tracker;
         settings.walk.absorption = absorption;
         const Medium medium = glowing_cube(sigma_s);
-        const RenderResult result =
-            render(medium, camera_at({0, 0, 6}), environment(), settings);
+        const RenderResult result = render(medium, camera_at({0, 0, 6}), environment(), settings);
         SCOPED_TRACE(tracker);
         expect_parts_make_the_whole(result.film.to_image());
       }
@@ -133,7 +133,8 @@ TEST(Layers, OfTheMiddleOfACubeAreThoseOfTheClosedForm) {
                   0.02 * glow[c]);
     }
     // Towards the camera, as often as there is an event; and between front and back.
-    EXPECT_NEAR(value(image, "normal.Z", 0), value(image, "A", 0), 0.03) << tracker;
+    // The weight of an event under weighted absorption is a mean over channels, hence no closer.
+    EXPECT_NEAR(value(image, "normal.Z", 0), value(image, "A", 0), 0.05) << tracker;
     EXPECT_NEAR(value(image, "position.Z", 0), 60 - value(image, "depth.Z", 0), 1e-3);
     EXPECT_EQ(value(image, "samples", 0), 20'000);
   }
