@@ -21,16 +21,6 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// The tracker where nobody names one. A path for each channel has less variance in clouds of
-/// colour, one path for all costs less where surfaces take most of the time.
-std::string standard_tracker(const PathScene& scene) {
-  const SpectrumValues rgb = scene.spectra->in_rgb();
-  const bool grey = std::all_of(
-      scene.media.begin(), scene.media.end(),
-      [&](const SceneMedium& medium) { return medium.bind(rgb).channels.has_grey_extinction(); });
-  return grey || !scene.surfaces ? "delta" : "spectral";
-}
-
 Interpolation parse_interpolation(const std::string& name) {
   if (name == "nearest") return Interpolation::kNearest;
   if (name == "trilinear") return Interpolation::kTrilinear;

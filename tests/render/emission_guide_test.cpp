@@ -114,8 +114,10 @@ TEST(EmissionGuide, DirectionsHaveTheirDensity) {
     for (int bin = 0; bin < kBins * kBins; ++bin) {
       double sum = 0;
       for (int i = 0; i < kSteps * kSteps; ++i) {
-        const double u = (bin / kBins + (i / kSteps + 0.5) / kSteps) / kBins;
-        const double v = (bin % kBins + (i % kSteps + 0.5) / kSteps) / kBins;
+        const Vec3i from(bin / kBins, bin % kBins, 0);
+        const Vec3i step(i / kSteps, i % kSteps, 0);
+        const double u = (from.x + (step.x + 0.5) / kSteps) / kBins;
+        const double v = (from.y + (step.y + 0.5) / kSteps) / kBins;
         sum += fixture.guide.pdf(position, cylinder_direction(u, v));
       }
       expected.push_back(sum);

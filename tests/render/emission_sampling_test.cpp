@@ -35,10 +35,13 @@ AttributeEnd
 /// A scene that looks along z from (x, y, -4).
 std::string scene_text(const std::string& at, const std::string& fov, const std::string& world) {
   const std::string size = std::to_string(kSize);
-  return "Film \"rgb\" \"integer xresolution\" " + size + " \"integer yresolution\" " + size +
-         "\nSampler \"independent\" \"integer pixelsamples\" 1\n" +
-         "PixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\nLookAt " + at + " -4 " +
-         at + " 0 0 1 0\nCamera \"perspective\" \"float fov\" " + fov + "\nWorldBegin\n" + world;
+  return R"(Film "rgb" "integer xresolution" )" + size + R"( "integer yresolution" )" + size + R"(
+Sampler "independent" "integer pixelsamples" 1
+PixelFilter "box" "float xradius" 0.5 "float yradius" 0.5
+LookAt )" +
+         at + " -4 " + at + R"( 0 0 1 0
+Camera "perspective" "float fov" )" +
+         fov + "\nWorldBegin\n" + world;
 }
 
 /// Means of one-sample pictures in R, or in all channels.
@@ -154,7 +157,8 @@ double mean_opacity(const Vec3d& from, double sigma_t) {
   constexpr int kSteps = 160;
   double sum = 0;
   for (int i = 0; i < kSteps * kSteps; ++i) {
-    const double z = 1 - 2 * (i / kSteps + 0.5) / kSteps;
+    const int row = i / kSteps;
+    const double z = 1 - 2 * (row + 0.5) / kSteps;
     const double azimuth = 2 * std::numbers::pi * (i % kSteps + 0.5) / kSteps;
     const double sine = std::sqrt(1 - z * z);
     const Vec3d direction(sine * std::cos(azimuth), sine * std::sin(azimuth), z);

@@ -52,12 +52,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.batch = options.batch;
   settings.max_scatterings = built.picture.max_scatterings;
   settings.walk.seed = options.seed;
-  const SpectrumValues rgb = built.scene.spectra->in_rgb();
-  const auto& media = built.scene.media;
-  const bool grey = std::all_of(media.begin(), media.end(), [&](const SceneMedium& medium) {
-    return medium.bind(rgb).channels.has_grey_extinction();
-  });
-  settings.walk.tracker = grey ? "delta" : "spectral";
+  settings.walk.tracker = standard_tracker(built.scene);
   if (!built.picture.tracker.empty()) settings.walk.tracker = built.picture.tracker;
   if (!built.picture.transmittance.empty()) {
     settings.walk.transmittance = built.picture.transmittance;
@@ -101,8 +96,8 @@ inline Picture render_text(const std::string& text, const PictureOptions& option
 
 /// A film of some pixels, without a filter that reaches into other pixels.
 inline std::string film(int size = 16) {
-  return "Film \"rgb\" \"integer xresolution\" " + std::to_string(size) +
-         " \"integer yresolution\" " + std::to_string(size) + "\nPixelFilter \"box\"\n";
+  return R"(Film "rgb" "integer xresolution" )" + std::to_string(size) +
+         R"( "integer yresolution" )" + std::to_string(size) + "\nPixelFilter \"box\"\n";
 }
 
 /// As many scatterings as it takes.
@@ -115,15 +110,15 @@ inline std::string box_shape(const Vec3d& low, const Vec3d& high) {
     points += fmt::format("{} {} {}  ", (corner & 1) != 0 ? high.x : low.x,
                           (corner & 2) != 0 ? high.y : low.y, (corner & 4) != 0 ? high.z : low.z);
   }
-  return "Shape \"trianglemesh\" \"point3 P\" [ " + points +
-         "] \"integer indices\" [ 0 2 3 0 3 1  4 5 7 4 7 6  0 1 5 0 5 4  2 6 7 2 7 3  "
+  return R"(Shape "trianglemesh" "point3 P" [ )" + points +
+         R"(] "integer indices" [ 0 2 3 0 3 1  4 5 7 4 7 6  0 1 5 0 5 4  2 6 7 2 7 3  )"
          "0 4 6 0 6 2  1 3 7 1 7 5 ]\n";
 }
 
 /// A box filled with a medium, of which nothing else is seen.
 inline std::string medium_box(const std::string& medium, const Vec3d& low, const Vec3d& high,
                               const std::string& around = "") {
-  return "AttributeBegin\nMaterial \"interface\"\nMediumInterface \"" + medium + "\" \"" + around +
+  return "AttributeBegin\nMaterial \"interface\"\nMediumInterface \"" + medium + R"(" ")" + around +
          "\"\n" + box_shape(low, high) + "AttributeEnd\n";
 }
 

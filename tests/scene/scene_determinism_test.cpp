@@ -13,10 +13,10 @@ namespace {
 /// shapes; glass that takes a hero.
 std::string crowded() {
   return stage(
-      "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"rgb sigma_a\" [ .2 .2 .2 ] "
-      "\"rgb sigma_s\" [ 2 2 2 ] \"point3 p0\" [ -.5 -.5 -.5 ] \"point3 p1\" [ .5 .5 .5 ] "
+      R"(MakeNamedMedium "grid" "string type" "uniformgrid" "rgb sigma_a" [ .2 .2 .2 ] )"
+      R"("rgb sigma_s" [ 2 2 2 ] "point3 p0" [ -.5 -.5 -.5 ] "point3 p1" [ .5 .5 .5 ] )"
       "\"integer nx\" 3 \"float density\" [ 1 0 2 ]\n"
-      "MakeNamedMedium \"juice\" \"string type\" \"homogeneous\" \"string preset\" \"Apple Juice\" "
+      R"(MakeNamedMedium "juice" "string type" "homogeneous" "string preset" "Apple Juice" )"
       "\"float scale\" 100\n" +
           medium_box("grid", Vec3d(-0.9), Vec3d(0.9)) + R"(
       ObjectBegin "glass"

@@ -49,7 +49,7 @@ TEST(SceneIrradiance, OfAPointIsItsIntensityTimesCosineOverSquareOfDistance) {
   const double distance_2 = 0.3 * 0.3 + 2 * 2;
   const double form = 3 * (2 / std::sqrt(distance_2)) / distance_2;
   expect_irradiance("point", 0.3,
-                    "LightSource \"point\" \"rgb I\" [ 1 .5 .25 ] \"point3 from\" [ 0 0 2 ] "
+                    R"(LightSource "point" "rgb I" [ 1 .5 .25 ] "point3 from" [ 0 0 2 ] )"
                     "\"float scale\" 3\n",
                     {form, 0.5 * form, 0.25 * form});
 }
@@ -69,7 +69,7 @@ TEST(SceneIrradiance, OfASpotEndsSmoothlyAtItsCone) {
     return u * u * (3 - 2 * u) * cosine * cosine * cosine / 4;
   };
   const std::string light =
-      "LightSource \"spot\" \"rgb I\" [ 2 2 2 ] \"point3 from\" [ 0 0 2 ] \"point3 to\" [ 0 0 0 ] "
+      R"(LightSource "spot" "rgb I" [ 2 2 2 ] "point3 from" [ 0 0 2 ] "point3 to" [ 0 0 0 ] )"
       "\"float coneangle\" 30 \"float conedeltaangle\" 10\n";
   for (const double x : {0.0, 0.5, 0.9}) expect_irradiance("spot", x, light, grey(2 * form(x)));
   EXPECT_EQ(render_text(plane_at(1.3, light)).mean[0], 0);
@@ -78,9 +78,9 @@ TEST(SceneIrradiance, OfASpotEndsSmoothlyAtItsCone) {
 TEST(SceneIrradiance, OfParallelLightIsItsRadianceTimesCosine) {
   const std::string direction = " \"point3 from\" [ 1 0 2 ] \"point3 to\" [ 0 0 0 ]\n";
   const double cosine = 2 / std::sqrt(5.0);
-  expect_irradiance("distant", 0, "LightSource \"distant\" \"rgb L\" [ 3 2 1 ]" + direction,
+  expect_irradiance("distant", 0, R"(LightSource "distant" "rgb L" [ 3 2 1 ])" + direction,
                     {3 * cosine, 2 * cosine, cosine});
-  expect_irradiance("illuminance", 0, "LightSource \"distant\" \"float illuminance\" 5" + direction,
+  expect_irradiance("illuminance", 0, R"(LightSource "distant" "float illuminance" 5)" + direction,
                     grey(5 * cosine));
 }
 
@@ -94,21 +94,20 @@ TEST(SceneIrradiance, OfASkyOfOneRadianceIsPiTimesThat) {
 TEST(SceneIrradiance, OfADiskAboveItsCentre) {
   // A disk's normal is z, so that it has to be turned over to shine down.
   const auto disk = [](const std::string& light) {
-    return "AttributeBegin AreaLightSource \"diffuse\" " + light +
+    return R"(AttributeBegin AreaLightSource "diffuse" )" + light +
            " ReverseOrientation Translate 0 0 2 Shape \"disk\" \"float radius\" 1.5 AttributeEnd\n";
   };
   const double form = kPi * 1.5 * 1.5 / (1.5 * 1.5 + 2 * 2);
-  expect_irradiance("disk", 0, disk("\"rgb L\" [ 1 2 3 ]"), {form, 2 * form, 3 * form}, 2048);
+  expect_irradiance("disk", 0, disk(R"("rgb L" [ 1 2 3 ])"), {form, 2 * form, 3 * form}, 2048);
   // Power is radiance times pi times area.
   const double area = kPi * 1.5 * 1.5;
-  expect_irradiance("power", 0, disk("\"float power\" 30"), grey(30 / (kPi * area) * form), 2048);
+  expect_irradiance("power", 0, disk(R"("float power" 30)"), grey(30 / (kPi * area) * form), 2048);
 }
 
 TEST(SceneIrradiance, OfADiskThatShinesAwayIsNothing) {
   const std::string scene =
-      plane_at(0,
-               "AttributeBegin AreaLightSource \"diffuse\" Translate 0 0 2 Shape \"disk\" "
-               "AttributeEnd\n");
+      plane_at(0, R"(AttributeBegin AreaLightSource "diffuse" Translate 0 0 2 Shape "disk" )"
+                  "AttributeEnd\n");
   EXPECT_EQ(render_text(scene).mean[0], 0);
 }
 
@@ -117,8 +116,8 @@ TEST(SceneIrradiance, OfASphereIsAsIfItWereAtItsCentre) {
   const double distance_2 = 1.5 * 1.5 + 4;
   const double form = kPi * 0.49 / distance_2 * 2 / std::sqrt(distance_2);
   expect_irradiance("sphere", 1.5,
-                    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] "
-                    "\"float scale\" 2 Translate 0 0 2 Shape \"sphere\" \"float radius\" 0.7 "
+                    R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] )"
+                    R"("float scale" 2 Translate 0 0 2 Shape "sphere" "float radius" 0.7 )"
                     "AttributeEnd\n",
                     grey(2 * form), 1024);
 }
@@ -130,12 +129,12 @@ TEST(SceneIrradiance, OfARectangleAboveItsCentre) {
   const double corner = x / std::hypot(1, x) * std::atan(y / std::hypot(1, x)) +
                         y / std::hypot(1, y) * std::atan(x / std::hypot(1, y));
   const std::array<double, 3> expected = grey(4 * 0.5 * corner);
-  const std::string light = "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] ";
-  const std::string corners = "\"point3 P\" [ -.8 -1.2 2  -.8 1.2 2  .8 -1.2 2  .8 1.2 2 ]";
-  expect_irradiance("patch", 0, light + "Shape \"bilinearmesh\" " + corners + " AttributeEnd\n",
+  const std::string light = R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] )";
+  const std::string corners = R"("point3 P" [ -.8 -1.2 2  -.8 1.2 2  .8 -1.2 2  .8 1.2 2 ])";
+  expect_irradiance("patch", 0, light + R"(Shape "bilinearmesh" )" + corners + " AttributeEnd\n",
                     expected, 1024);
   expect_irradiance("triangles", 0,
-                    light + "Shape \"trianglemesh\" " + corners +
+                    light + R"(Shape "trianglemesh" )" + corners +
                         " \"integer indices\" [ 0 1 2  1 3 2 ] AttributeEnd\n",
                     expected, 1024);
 }

@@ -11,11 +11,10 @@
 namespace freepath::testing {
 namespace {
 
-const std::string kSigmas =
-    "\"rgb sigma_a\" [ .2 .2 .2 ] \"rgb sigma_s\" [ 2 2 2 ] \"float g\" 0.3 ";
+const std::string kSigmas = R"("rgb sigma_a" [ .2 .2 .2 ] "rgb sigma_s" [ 2 2 2 ] "float g" 0.3 )";
 
 std::string homogeneous(const std::string& name, const std::string& parameters = kSigmas) {
-  return "MakeNamedMedium \"" + name + "\" \"string type\" \"homogeneous\" " + parameters + "\n";
+  return R"(MakeNamedMedium ")" + name + R"(" "string type" "homogeneous" )" + parameters + "\n";
 }
 
 TEST(SceneTwins, UniformGridOfOneValueIsHomogeneous) {
@@ -24,10 +23,10 @@ TEST(SceneTwins, UniformGridOfOneValueIsHomogeneous) {
   // The box ends at the centres of the outer voxels, beyond which a grid fades.
   const std::string box = medium_box("m", Vec3d(-1), Vec3d(1));
   expect_twins("grid",
-               stage("MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" " + kSigmas +
-                     "\"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 3 "
-                     "\"point3 p0\" [ -1.5 -1.5 -1.5 ] \"point3 p1\" [ 1.5 1.5 1.5 ] "
-                     "\"float density\" [ " +
+               stage(R"(MakeNamedMedium "m" "string type" "uniformgrid" )" + kSigmas +
+                     R"("integer nx" 3 "integer ny" 3 "integer nz" 3 )"
+                     R"("point3 p0" [ -1.5 -1.5 -1.5 ] "point3 p1" [ 1.5 1.5 1.5 ] )"
+                     R"("float density" [ )" +
                      ones + "]\n" + box),
                stage(homogeneous("m") + box));
 }
@@ -57,9 +56,9 @@ void for_each_voxel(const Visit& visit) {
 std::string lumpy_grid() {
   std::string values;
   for_each_voxel([&](const Vec3i& voxel) { values += std::to_string(lump(voxel)) + " "; });
-  return "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" " + kSigmas +
-         "\"integer nx\" 6 \"integer ny\" 5 \"integer nz\" 7 \"point3 p0\" [ -1.2 -1 -1.4 ] "
-         "\"point3 p1\" [ 1.2 1 1.4 ] \"float density\" [ " +
+  return R"(MakeNamedMedium "m" "string type" "uniformgrid" )" + kSigmas +
+         R"("integer nx" 6 "integer ny" 5 "integer nz" 7 "point3 p0" [ -1.2 -1 -1.4 ] )"
+         R"("point3 p1" [ 1.2 1 1.4 ] "float density" [ )" +
          values + "]\n";
 }
 
@@ -78,15 +77,15 @@ TEST(SceneTwins, UniformGridIsTheVolumeOfAFile) {
   const Field* const fields[] = {&field};
   write_vdb(file.path(), fields);
   expect_twins("file", stage(lumpy_grid() + kFarBox),
-               stage("MakeNamedMedium \"m\" \"string type\" \"openvdb\" " + kSigmas +
-                     "\"string filename\" \"" + file.path().string() + "\"\n" + kFarBox));
+               stage(R"(MakeNamedMedium "m" "string type" "openvdb" )" + kSigmas +
+                     R"("string filename" ")" + file.path().string() + "\"\n" + kFarBox));
 }
 
 // Where the boundary passes through voxels it stays, even if these are empty.
 TEST(SceneTwins, BoundaryThatNeedNotBeTracedIsAsOneThatIs) {
   const std::string tight = medium_box("m", kLow + Vec3d(0.05), -kLow - Vec3d(0.05));
   const std::string sphere =
-      "AttributeBegin Translate 0.2 0.9 -2.1 Material \"diffuse\" Shape \"sphere\" \"float "
+      R"(AttributeBegin Translate 0.2 0.9 -2.1 Material "diffuse" Shape "sphere" "float )"
       "radius\" 0.3 AttributeEnd\n";
   const std::string a = stage(lumpy_grid() + kFarBox + sphere);
   const std::string b = stage(lumpy_grid() + tight + sphere);
@@ -110,8 +109,8 @@ TEST(SceneTwins, CameraInAMediumIsAsInABubbleOfIt) {
                    fmt::format(fmt::runtime(camera), "MediumInterface \"\" \"m\"\n") +
                    medium_box("m", Vec3d(-1), Vec3d(1)),
                kUnlimited + film() + fmt::format(fmt::runtime(camera), "") + fog +
-                   "AttributeBegin Translate 0.2 0.1 -0.5 Material \"interface\" "
-                   "MediumInterface \"\" \"m\" Shape \"sphere\" \"float radius\" 1e-4 "
+                   R"(AttributeBegin Translate 0.2 0.1 -0.5 Material "interface" )"
+                   R"(MediumInterface "" "m" Shape "sphere" "float radius" 1e-4 )"
                    "AttributeEnd\n",
                256, {.absolute = 3e-4, .largest_relative_error = 0.01});
 }
@@ -130,8 +129,8 @@ TEST(SceneTwins, NestedMediaAbsorbAsTheirLengths) {
       "LookAt 0 0 -9  0 0 0  0 1 0\n"
       "Camera \"orthographic\" \"float screenwindow\" [ -.01 .01 -.01 .01 ]\nWorldBegin\n"
       "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" +
-      homogeneous("a", "\"rgb sigma_a\" [ .3 .3 .3 ] \"rgb sigma_s\" [ 0 0 0 ]") +
-      homogeneous("b", "\"rgb sigma_a\" [ .9 .9 .9 ] \"rgb sigma_s\" [ 0 0 0 ]") +
+      homogeneous("a", R"("rgb sigma_a" [ .3 .3 .3 ] "rgb sigma_s" [ 0 0 0 ])") +
+      homogeneous("b", R"("rgb sigma_a" [ .9 .9 .9 ] "rgb sigma_s" [ 0 0 0 ])") +
       medium_box("a", Vec3d(-1), Vec3d(1)) + medium_box("b", Vec3d(-0.5), Vec3d(0.5), "a") +
       medium_box("", Vec3d(-0.3), Vec3d(0.1), "b");
   const double expected = std::exp(-(0.3 * 1 + 0.9 * 0.6));
@@ -142,10 +141,10 @@ TEST(SceneTwins, NestedMediaAbsorbAsTheirLengths) {
 TEST(SceneTwins, GreySceneIsTheSameInWavelengths) {
   const std::string scene =
       stage(lumpy_grid() + kFarBox +
-            "AttributeBegin Translate 1 -0.8 -1.6 Material \"dielectric\" Shape \"sphere\" "
+            R"(AttributeBegin Translate 1 -0.8 -1.6 Material "dielectric" Shape "sphere" )"
             "\"float radius\" 0.3 AttributeEnd\n"
-            "AttributeBegin Translate -1.2 0.6 -1.6 Material \"conductor\" \"rgb reflectance\" "
-            "[ .8 .8 .8 ] \"float roughness\" 0.2 Shape \"sphere\" \"float radius\" 0.3 "
+            R"(AttributeBegin Translate -1.2 0.6 -1.6 Material "conductor" "rgb reflectance" )"
+            R"([ .8 .8 .8 ] "float roughness" 0.2 Shape "sphere" "float radius" 0.3 )"
             "AttributeEnd\n");
   expect_alike("modes", render_text(scene, {.samples = 1024}),
                render_text(scene, {.mode = ColorMode::kSpectral, .samples = 1024, .seed = 3}));
@@ -155,17 +154,17 @@ class SceneTrackers : public ::testing::TestWithParam<const char*> {};
 
 // One medium whose extinction has a colour, seen through another that is grey.
 std::string coloured_scene(const std::string& methods) {
-  return stage(homogeneous("m", "\"rgb sigma_a\" [ .1 .3 .5 ] \"rgb sigma_s\" [ 1 .6 .4 ]") +
+  return stage(homogeneous("m", R"("rgb sigma_a" [ .1 .3 .5 ] "rgb sigma_s" [ 1 .6 .4 ])") +
                    medium_box("m", Vec3d(-0.2, -1, -1), Vec3d(1)) + homogeneous("n") +
                    medium_box("n", Vec3d(-1), Vec3d(-0.4, 1, 1)),
-               "Integrator \"volpath\" \"integer maxdepth\" 8 " + methods + "\n");
+               R"(Integrator "volpath" "integer maxdepth" 8 )" + methods + "\n");
 }
 
 TEST_P(SceneTrackers, AgreeWithOnePathForEachChannel) {
   static const std::vector<Picture> references = [] {
     std::vector<Picture> pictures;
     for (const ColorMode mode : kColorModes) {
-      pictures.push_back(render_text(coloured_scene("\"string tracker\" \"delta\""),
+      pictures.push_back(render_text(coloured_scene(R"("string tracker" "delta")"),
                                      {.mode = mode, .samples = 256}));
     }
     return pictures;
@@ -180,12 +179,12 @@ TEST_P(SceneTrackers, AgreeWithOnePathForEachChannel) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SceneTrackers,
-    ::testing::Values("\"string tracker\" \"spectral\"", "\"string tracker\" \"weighted-delta\"",
-                      "\"string tracker\" \"weighted-delta:energy-partitioning=yes\"",
-                      "\"string tracker\" \"per-wavelength\"",
-                      "\"string tracker\" \"hero-wavelength\"",
-                      "\"string tracker\" \"spectral-decomposition\"",
-                      "\"string tracker\" \"spectral\" \"string transmittance\" \"next-flight\""));
+    ::testing::Values(R"("string tracker" "spectral")", R"("string tracker" "weighted-delta")",
+                      R"("string tracker" "weighted-delta:energy-partitioning=yes")",
+                      R"("string tracker" "per-wavelength")",
+                      R"("string tracker" "hero-wavelength")",
+                      R"("string tracker" "spectral-decomposition")",
+                      R"("string tracker" "spectral" "string transmittance" "next-flight")"));
 
 }  // namespace
 }  // namespace freepath::testing

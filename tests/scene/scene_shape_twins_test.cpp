@@ -14,24 +14,24 @@ namespace freepath::testing {
 namespace {
 
 const std::string kFog =
-    "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ .2 .2 .2 ] "
+    R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [ .2 .2 .2 ] )"
     "\"rgb sigma_s\" [ 2 2 2 ]\n";
 
 /// What shapes are made of.
-const char* const kSurfaces[] = {"Material \"diffuse\" ", "Material \"dielectric\" ",
-                                 "Material \"interface\" MediumInterface \"m\" \"\" "};
+const char* const kSurfaces[] = {R"(Material "diffuse" )", R"(Material "dielectric" )",
+                                 R"(Material "interface" MediumInterface "m" "" )"};
 
 /// The box of box_shape() as bilinear patches; their u and v run so that normals point outwards.
 std::string patches() {
-  return "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1  -1 -1 1  "
-         "1 -1 1  -1 1 1  1 1 1 ] \"integer indices\" [ 0 2 1 3  4 5 6 7  0 1 4 5  2 6 3 7  "
+  return R"(Shape "bilinearmesh" "point3 P" [ -1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1  -1 -1 1  )"
+         R"(1 -1 1  -1 1 1  1 1 1 ] "integer indices" [ 0 2 1 3  4 5 6 7  0 1 4 5  2 6 3 7  )"
          "0 4 2 6  1 3 5 7 ]\n";
 }
 
 TEST(SceneShapeTwins, BoxOfTrianglesIsThatOfPatches) {
   const std::string turned = "Rotate 30 1 2 0 Scale .8 .8 .8 ";
   for (const std::string surface : kSurfaces) {
-    const std::string begin = kFog + "AttributeBegin " + surface + turned;
+    const std::string begin = fmt::format("{}AttributeBegin {}{}", kFog, surface, turned);
     expect_twins(surface, stage(begin + box_shape(Vec3d(-1), Vec3d(1)) + "AttributeEnd\n"),
                  stage(begin + patches() + "AttributeEnd\n"), 128);
   }
@@ -90,9 +90,9 @@ TEST(SceneShapeTwins, SphereIsNearlyAMeshOfManyTriangles) {
   const TemporaryFile file("round.ply");
   write_ply(file.path(), round_mesh(5));
   for (const std::string surface : {kSurfaces[0], kSurfaces[2]}) {
-    const std::string begin = kFog + "AttributeBegin " + surface;
+    const std::string begin = fmt::format("{}AttributeBegin {}", kFog, surface);
     expect_twins(surface, stage(begin + "Shape \"sphere\" AttributeEnd\n"),
-                 stage(begin + "Shape \"plymesh\" \"string filename\" \"" + file.path().string() +
+                 stage(begin + R"(Shape "plymesh" "string filename" ")" + file.path().string() +
                        "\" AttributeEnd\n"),
                  128, {.absolute = 5e-4, .largest_relative_error = 0.01});
   }
@@ -101,12 +101,12 @@ TEST(SceneShapeTwins, SphereIsNearlyAMeshOfManyTriangles) {
 // Subdivision draws vertices e²/4 of the radius inwards: 2e-3 of it here.
 TEST(SceneShapeTwins, SphereIsNearlyASubdividedMesh) {
   const RoundMesh mesh = round_mesh(4);
-  std::string shape = "Shape \"loopsubdiv\" \"integer levels\" 1 \"point3 P\" [ ";
+  std::string shape = R"(Shape "loopsubdiv" "integer levels" 1 "point3 P" [ )";
   for (const Vec3d& point : mesh.points)
     shape += fmt::format("{} {} {} ", point.x, point.y, point.z);
-  shape += "] \"integer indices\" [ ";
+  shape += R"(] "integer indices" [ )";
   for (const int index : mesh.indices) shape += std::to_string(index) + " ";
-  const std::string begin = "AttributeBegin Material \"diffuse\" ";
+  const std::string begin = R"(AttributeBegin Material "diffuse" )";
   expect_twins("subdivided", stage(begin + "Shape \"sphere\" AttributeEnd\n"),
                stage(begin + shape + "] AttributeEnd\n"), 128,
                {.absolute = 2e-3, .largest_relative_error = 0.01});
@@ -114,9 +114,9 @@ TEST(SceneShapeTwins, SphereIsNearlyASubdividedMesh) {
 
 TEST(SceneShapeTwins, InstancesAreTheShapesWrittenOut) {
   const std::string things =
-      "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [ .7 .2 .1 ] "
+      R"(AttributeBegin Material "diffuse" "rgb reflectance" [ .7 .2 .1 ] )"
       "Translate -.2 0 0 Shape \"sphere\" \"float radius\" .4 AttributeEnd\n"
-      "AttributeBegin Material \"dielectric\" Translate .5 .3 0 Shape \"sphere\" \"float radius\" "
+      R"(AttributeBegin Material "dielectric" Translate .5 .3 0 Shape "sphere" "float radius" )"
       ".3 AttributeEnd\n" +
       medium_box("m", Vec3d(-0.9, -0.2, -0.5), Vec3d(-0.65, 0.9, 0.5));
   const char* const places[] = {"Translate -.7 .5 0 Rotate 40 0 1 0 ",
@@ -125,8 +125,8 @@ TEST(SceneShapeTwins, InstancesAreTheShapesWrittenOut) {
   std::string written = kFog;
   std::string instances = kFog + "ObjectBegin \"things\"\n" + things + "ObjectEnd\n";
   for (const std::string place : places) {
-    written += "AttributeBegin " + place + things + "AttributeEnd\n";
-    instances += "AttributeBegin " + place + "ObjectInstance \"things\" AttributeEnd\n";
+    written += fmt::format("AttributeBegin {}{}AttributeEnd\n", place, things);
+    instances += fmt::format("AttributeBegin {}ObjectInstance \"things\" AttributeEnd\n", place);
   }
   expect_twins("instances", stage(written), stage(instances));
 }
@@ -135,17 +135,17 @@ TEST(SceneShapeTwins, InstancesAreTheShapesWrittenOut) {
 // that of a quadric over, as in pbrt.
 TEST(SceneShapeTwins, LightsThatAreTurnedOverAreThoseThatAreReversed) {
   const std::string light =
-      "Material \"diffuse\" AreaLightSource \"diffuse\" \"rgb L\" [ 4 4 4 ] Translate 0 1.2 0 ";
+      R"(Material "diffuse" AreaLightSource "diffuse" "rgb L" [ 4 4 4 ] Translate 0 1.2 0 )";
   const auto scene = [&](const std::string& shape) {
     return stage("AttributeBegin " + light + shape +
-                 " AttributeEnd AttributeBegin Material \"diffuse\" Shape \"sphere\" "
+                 R"( AttributeEnd AttributeBegin Material "diffuse" Shape "sphere" )"
                  "\"float radius\" 0.5 AttributeEnd\n");
   };
-  const std::string disk = "Shape \"disk\"";
+  const std::string disk = R"(Shape "disk")";
   const std::string triangles =
-      "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0  1 -1 0  1 1 0  -1 1 0 ] ";
-  const std::string up = "\"integer indices\" [ 0 1 2  0 2 3 ]";
-  const std::string down = "\"integer indices\" [ 0 2 1  0 3 2 ]";
+      R"(Shape "trianglemesh" "point3 P" [ -1 -1 0  1 -1 0  1 1 0  -1 1 0 ] )";
+  const std::string up = R"("integer indices" [ 0 1 2  0 2 3 ])";
+  const std::string down = R"("integer indices" [ 0 2 1  0 3 2 ])";
   const std::string flat = "Rotate -90 1 0 0 ";  // z becomes y
   const std::string mirror = "Scale 1 1 -1 ";
   const auto expect_same = [&](const char* name, const std::string& a, const std::string& b) {
@@ -173,11 +173,10 @@ TEST(SceneShapeTwins, LightOfAFileHasFacesOfAllKinds) {
   write(mixed, "3 0 1 2\n3 0 2 3\n4 1 4 5 2\n", 3);
   write(triangles, "3 0 1 2\n3 0 2 3\n3 1 4 5\n3 1 5 2\n", 4);
   const auto scene = [](const TemporaryFile& file) {
-    return stage(
-        "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 3 3 3 ] "
-        "\"bool twosided\" true Translate 0 -0.6 0 Rotate 60 1 1 0 "
-        "Shape \"plymesh\" \"string filename\" \"" +
-        file.path().string() + "\" AttributeEnd\n");
+    return stage(R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [ 3 3 3 ] )"
+                 R"("bool twosided" true Translate 0 -0.6 0 Rotate 60 1 1 0 )"
+                 R"(Shape "plymesh" "string filename" ")" +
+                 file.path().string() + "\" AttributeEnd\n");
   };
   expect_twins("faces", scene(mixed), scene(triangles), 128);
 }
@@ -185,11 +184,10 @@ TEST(SceneShapeTwins, LightOfAFileHasFacesOfAllKinds) {
 // Media lie on the side away from the normal, or on the other where the shape is reversed.
 TEST(SceneShapeTwins, ReversedBoundarySwapsTheSidesOfMedia) {
   const std::string box = box_shape(Vec3d(-1), Vec3d(1));
-  const std::string begin = kFog + "AttributeBegin Material \"interface\" ";
+  const std::string begin = kFog + R"(AttributeBegin Material "interface" )";
   expect_twins(
-      "reversed", stage(begin + "MediumInterface \"m\" \"\" " + box + "AttributeEnd\n"),
-      stage(begin + "ReverseOrientation MediumInterface \"\" \"m\" " + box + "AttributeEnd\n"),
-      128);
+      "reversed", stage(begin + R"(MediumInterface "m" "" )" + box + "AttributeEnd\n"),
+      stage(begin + R"(ReverseOrientation MediumInterface "" "m" )" + box + "AttributeEnd\n"), 128);
 }
 
 }  // namespace

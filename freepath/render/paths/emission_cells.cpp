@@ -64,7 +64,7 @@ class PlacedField {
  public:
   /// @param to_place grid → place in the field's voxels; unused for functions
   /// @param to_world grid → world; for functions alone
-  PlacedField(const Field& field, Matrix4d to_place, const Matrix4d& to_world)
+  PlacedField(const Field& field, const Matrix4d& to_place, const Matrix4d& to_world)
       : field_(&field), to_world_(to_world), to_place_(to_place) {
     if (!field.function) ranges_ = std::make_unique<VoxelRanges>(field.voxels);
   }
@@ -212,7 +212,7 @@ template <class Function>
 double mean_over_cell(const Vec3i& cell, const Function& function) {
   double sum = 0;
   for (int i = 0; i < kPoints * kPoints * kPoints; ++i) {
-    const Vec3d place(i / (kPoints * kPoints), i / kPoints % kPoints, i % kPoints);
+    const Vec3d place(Vec3i(i / (kPoints * kPoints), i / kPoints % kPoints, i % kPoints));
     sum += function(Vec3d(cell) + (place + Vec3d(0.5)) / kPoints);
   }
   return sum / (kPoints * kPoints * kPoints);

@@ -17,6 +17,14 @@ constexpr std::size_t kPixelsOfSplitJobs = 1024;
 
 }  // namespace
 
+std::string standard_tracker(const PathScene& scene) {
+  const SpectrumValues rgb = scene.spectra->in_rgb();
+  const bool grey = std::all_of(
+      scene.media.begin(), scene.media.end(),
+      [&](const SceneMedium& medium) { return medium.bind(rgb).channels.has_grey_extinction(); });
+  return grey || !scene.surfaces ? "delta" : "spectral";
+}
+
 RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
                           const ProgressFunction& progress) {
   if (settings.samples == 0 && settings.time_limit <= 0) {

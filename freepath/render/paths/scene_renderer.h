@@ -1,11 +1,17 @@
 #pragma once
 /// @file Renders scenes of media, surfaces and lights.
 
+#include <string>
+
 #include "freepath/render/paths/path_colors.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/renderer.h"
 
 namespace freepath {
+
+/// The tracker for a scene where nobody names one. A path for each channel has less variance in
+/// clouds of colour, one path for all costs less where surfaces take most of the time.
+std::string standard_tracker(const PathScene& scene);
 
 /// Renders a scene. The picture depends on scene, colour mode, walk settings and sample count
 /// alone.

@@ -95,7 +95,8 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
   const FilterSample filtered = scene_.filter.sample(film[0], film[1]);
   const auto width = static_cast<std::size_t>(scene_.camera->width());
   const float x = static_cast<float>(path.pixel % width) + 0.5F + filtered.x;
-  const float y = static_cast<float>(path.pixel / width) + 0.5F + filtered.y;
+  const std::size_t row = path.pixel / width;
+  const float y = static_cast<float>(row) + 0.5F + filtered.y;
   std::array<float, 2> lens{};
   if (scene_.camera->has_lens()) lens = numbers.pair(kLensDimension);
   const CameraRay ray = scene_.camera->ray(x, y, lens[0], lens[1]);

@@ -182,7 +182,7 @@ void read_sampler(BuildContext& context, PictureSettings& picture) {
 /// A tracker or estimator with its options; empty where none is named.
 std::string method_name(const ParameterList& list, std::string_view name,
                         std::span<const MethodInfo> known) {
-  const std::string text = list.get_string(name, "");
+  std::string text = list.get_string(name, "");
   if (!text.empty() && text != kAutoTracker) {
     at_location(list.location_of(name), [&] { return parse_method(text, known); });
   }

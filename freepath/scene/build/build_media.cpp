@@ -261,7 +261,7 @@ class MediumReader {
       }
     }
     tbb::parallel_for(std::size_t{0}, values.size(), [&](std::size_t i) {
-      const RgbValue& value = std::get<RgbValue>(values[i]);
+      const auto& value = std::get<RgbValue>(values[i]);
       const RgbColorSpace& space = rgb_color_space(name_of(value.color_space));
       const Vec3d rgb(value.r, value.g, value.b);
       spectra[i] = meaning == ColorMeaning::kIlluminant ? RgbSpectrum::illuminant(rgb, space)

@@ -1,6 +1,7 @@
 #include "freepath/scene/build/scene_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,21 @@ Box3d extent_of(const BuiltShapes& shapes, const SceneCamera& camera) {
   const float y = 0.5F * static_cast<float>(camera.height());
   extent.extendBy(camera.ray(x, y, 0.5F, 0.5F).origin);
   return extent;
+}
+
+/// Rays know places in single precision, and products of coordinates have to fit it too.
+constexpr double kFarthest = 1e15;
+
+void check_places(const PbrtScene& pbrt, const Box3d& box, const char* what) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double farthest = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
+    if (farthest < kFarthest) continue;
+    fail(
+        "{}: {} reach to {:.3g} along {}, and nothing further than {:.0e} can be rendered: scale "
+        "the "
+        "scene",
+        pbrt.file, what, farthest, "xyz"[axis], kFarthest);
+  }
 }
 
 /// Near what is seen: the middle of the media that have bounds, else of everything.
@@ -57,7 +73,11 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   build_materials(context);
   BuiltShapes shapes = build_shapes(context);
   const Box3d extent = extent_of(shapes, *scene.camera);
+  check_places(pbrt, extent, "shapes or the camera");
   build_media(context, extent);
+  for (const SceneMedium& medium : scene.media) {
+    check_places(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
+  }
   scene.origin = origin_of(scene, extent);
   scene.shapes = shapes.shapes;
   SceneLightsDescription lights;
