@@ -85,7 +85,7 @@ void check_memory(const PixelWindow& window, const FilmPlan& plan) {
     if (plan.written().has(info.layer)) channels += info.channels.size();
   }
   if (plan.denoiser) channels += 20;  // its inputs and output, and the noisy picture
-  const double bytes =
+  const auto bytes =
       static_cast<double>(Film::bytes_per_pixel(plan.recorded()) + channels * sizeof(float));
   const double needed = bytes * window.width * window.height;
   const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);

@@ -11,7 +11,7 @@
 #include "freepath/render/pixel_window.h"
 #include "freepath/render/renderer.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;
 }
 

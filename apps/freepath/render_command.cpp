@@ -223,7 +223,7 @@ void run_scene(const CLI::App& command, const Options& options) {
 void run(const CLI::App& command, const Options& options) {
   const auto& files = options.volumes.files;
   if (std::any_of(files.begin(), files.end(), is_scene_file)) return run_scene(command, options);
-  if (options.outputs.empty()) fail("-o is required: the picture to write, .exr or .png");
+  if (options.outputs.empty()) fail("-o, --output is required: the picture to write, .exr or .png");
   if (command.count("--color") > 0 && options.color != "rgb") {
     fail("--color {}: volumes are rendered in rgb, scenes (.pbrt) in rgb or spectral",
          options.color);

@@ -164,7 +164,7 @@ void Film::put_layer(Layer layer, std::size_t pixel, std::vector<float>& values)
     case Layer::kIndirect:
       return put_difference(sums.radiance, kAtMostOnce);
     case Layer::kHalves: {
-      const double odd = sums.samples / 2;
+      const uint32_t odd = sums.samples / 2;
       put_sum(kEven, sums.samples - odd);
       for (int c = 0; c < kChannels; ++c) {
         put(odd > 0 ? (sums.radiance[c] - sums_of(pixel, kEven)[c]) / odd : 0);

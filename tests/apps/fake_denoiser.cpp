@@ -20,6 +20,8 @@ const char* error_message = nullptr;
 
 }  // namespace
 
+// The library's names.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 
 void* oidnNewDevice(int /*type*/) { return &devices; }
@@ -65,3 +67,4 @@ void oidnExecuteFilter(void* filter) {
 void oidnReleaseFilter(void* filter) { delete static_cast<Filter*>(filter); }
 
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)
