@@ -26,9 +26,9 @@ enum class Interpolation {
 /// One density field times the spectra of its cross sections.
 struct Component {
   std::shared_ptr<const Field> density;
-  Spectrum sigma_a{0.0F};   ///< Absorption per unit of density [1/m].
-  Spectrum sigma_s{1.0F};   ///< Scattering per unit of density [1/m].
-  PhaseFunction phase;      ///< Isotropic unless it is set.
+  Spectrum sigma_a{0.0F};    ///< Absorption per unit of density [1/m].
+  Spectrum sigma_s{1.0F};    ///< Scattering per unit of density [1/m].
+  PhaseFunction phase = {};  ///< Isotropic unless it is set.
   Spectrum emission{0.0F};  ///< L_e, emitted radiance; the source term is sigma_a · density · L_e.
 
   Spectrum sigma_t() const { return sigma_a + sigma_s; }

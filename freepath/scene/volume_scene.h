@@ -19,7 +19,7 @@ struct OpticalProperties {
   Spectrum albedo{0.99F};           ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
   std::optional<Spectrum> sigma_a;  ///< [1/m per unit of density] with sigma_s replaces the albedo;
   std::optional<Spectrum> sigma_s;  ///< of the two the one that is not given is 0.
-  PhaseFunction phase;
+  PhaseFunction phase = {};
   Spectrum emission{0.0F};  ///< L_e
 };
 

@@ -35,7 +35,7 @@ struct SceneMediumComponent {
   float radiance_scale = 1;
   std::shared_ptr<const Field> radiance_field;
   std::optional<TemperatureEmission> temperature;  ///< In place of radiance.
-  PhaseFunction phase;
+  PhaseFunction phase = {};
 };
 
 /// Voxels whose coefficients are colours, each of which becomes a spectrum: pbrt's "rgbgrid". One
@@ -47,7 +47,7 @@ struct ColorVoxels {
   std::vector<RgbSpectrum> radiance;          ///< Illuminants.
   float scale = 1;                            ///< Of both coefficients.
   float radiance_scale = 1;
-  PhaseFunction phase;
+  PhaseFunction phase = {};
 };
 
 /// A medium, and its cross sections in the channels of some paths.
