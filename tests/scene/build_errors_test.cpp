@@ -222,9 +222,8 @@ struct DoubtfulScene {
 const DoubtfulScene kDoubtful[] = {
     {"Camera \"perspective\" \"float fow\" 2\nWorldBegin", "1:22", "did you mean 'fov'?"},
     {"Film \"rgb\" \"string filenam\" \"x\"\nWorldBegin", "1:12", "did you mean 'filename'?"},
-    {"Film \"rgb\" \"float cropwindow\" [ 0 1 0 1 ]\nWorldBegin", "1:12",
-     "'cropwindow' is left out"},
-    {"Film \"rgb\" \"integer pixelbounds\" [ 0 1 0 1 ]\nWorldBegin", "1:12", "is left out"},
+    {"Film \"rgb\" \"float cropwindow\" [ 0 2 0 1 ]\nWorldBegin", "1:12",
+     "'cropwindow' reaches beyond the film"},
     {"Film \"rgb\" \"float maxcomponentvalue\" 10\nWorldBegin", "1:12", "would bias"},
     {"Film \"rgb\" \"string sensor\" \"canon_eos_100d\"\nWorldBegin", "1:12", "no sensor"},
     {"Film \"spectral\"\nWorldBegin", "1:1", "no layers of wavelengths"},

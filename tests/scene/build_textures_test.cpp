@@ -202,7 +202,7 @@ TEST(BuildTextures, SayWhatIsWrongWithImages) {
   EXPECT_EQ(texture_error(R"(Texture "t" "float" "imagemap" "string filename" "none.png")"),
             "scene.pbrt:2:32: there is no file 'none.png' (looked for 'none.png')");
   EXPECT_EQ(texture_error(R"(Texture "t" "float" "imagemap")"),
-            "scene.pbrt:2:1: 'filename' names no file");
+            "scene.pbrt:2:1: 'filename' is missing: the file to read");
   const TwoPixels pixels;
   const auto error_with = [&](const std::string& parameter) {
     return texture_error(fmt::format(R"(Texture "t" "float" "imagemap" {} "string filename" "{}")",
