@@ -86,7 +86,7 @@ TEST(BuildErrors, OfThePicture) {
 /// The type of a medium and its parameters.
 const BrokenScene kMedia[] = {
     {R"("homogenous")", "1:1", "did you mean 'homogeneous'?"},
-    {R"("cloud")", "1:1", "not supported"},
+    {R"("cloud" "float wispiness" -1)", "1:43", "may not be negative"},
     {R"("homogeneous" "rgb sigma_a" [ -1 0 0 ])", "1:49", "'sigma_a' is (-1, 0, 0)"},
     {R"("homogeneous" "spectrum sigma_s" [ 400 1 500 -1 ])", "1:49", "has the value -1"},
     {R"("homogeneous" "spectrum sigma_s" "glas-BK7")", "1:49", "'glas-BK7'"},

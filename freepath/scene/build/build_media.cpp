@@ -14,6 +14,7 @@
 #include "freepath/io/volume.h"
 #include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/render/lights/photometry.h"
+#include "freepath/scene/build/cloud_density.h"
 #include "freepath/scene/build/scattering_presets.h"
 
 namespace freepath {
@@ -36,6 +37,7 @@ class MediumReader {
                                 "moving media are not supported: this one stands as at the start");
     }
     return at_location(medium_.location, [&] {
+      if (medium_.type == "cloud") return cloud();
       if (medium_.type == "homogeneous") return homogeneous(extent);
       if (medium_.type == "uniformgrid") return uniform_grid();
       if (medium_.type == "rgbgrid") return color_grid();
@@ -46,14 +48,12 @@ class MediumReader {
 
  private:
   [[noreturn]] void fail_unknown() const {
-    constexpr std::string_view kKnown[] = {"homogeneous", "uniformgrid", "rgbgrid", "nanovdb",
-                                           "openvdb"};
-    if (medium_.type == "cloud") {
-      fail("media of type 'cloud' are not supported yet: `freepath generate cloud` makes a volume");
-    }
+    constexpr std::string_view kKnown[] = {"cloud",   "homogeneous", "uniformgrid",
+                                           "rgbgrid", "nanovdb",     "openvdb"};
     const std::string_view nearest = nearest_name(medium_.type, kKnown);
     fail(
-        "there is no type of medium {}{}; known are homogeneous, uniformgrid, rgbgrid, nanovdb, "
+        "there is no type of medium {}{}; known are cloud, homogeneous, uniformgrid, rgbgrid, "
+        "nanovdb, "
         "openvdb",
         in_quotes(medium_.type),
         nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest));
@@ -131,6 +131,21 @@ class MediumReader {
     emission.scale = list_.get_float("temperaturescale", 1);
     emission.offset = list_.get_float("temperatureoffset", list_.get_float("temperaturecutoff", 0));
     component.temperature = emission;
+  }
+
+  SceneMedium cloud() {
+    SceneMediumComponent component;
+    read_coefficients(component);
+    component.phase = phase();
+    CloudDensity density;
+    density.density = nonnegative("density", 1);
+    density.wispiness = nonnegative("wispiness", 1);
+    density.frequency = list_.get_float("frequency", 5);
+    density.p0 = list_.get_point("p0", Vec3d(0));
+    density.p1 = list_.get_point("p1", Vec3d(1));
+    return {medium_.name,
+            medium_of(make_cloud_field(medium_.name, density, to_world()), component, false),
+            {component}};
   }
 
   SceneMedium homogeneous(const Box3d& extent) {
