@@ -199,6 +199,10 @@ void run_scene(const CLI::App& command, const Options& options) {
     fail("'{}' is a scene: it is rendered alone, without other files", options.volumes.files[0]);
   }
   check_scene_options(command);
+  for (const std::string& value : options.emission) {
+    if (looks_numeric(value))
+      fail("--emission {} is for volumes: of a scene its file says that", value);
+  }
   constexpr std::array kColors{Choice<ColorMode>{"rgb", ColorMode::kRgb},
                                Choice<ColorMode>{"spectral", ColorMode::kSpectral}};
   const auto given = [&](const char* name) { return command.count(name) > 0; };

@@ -32,6 +32,17 @@ struct LayerSample {
   Spectrum background{0.0F};    ///< From outside, not scattered.
   Spectrum unscattered{0.0F};   ///< From wherever, not scattered.
   Spectrum at_most_once{0.0F};  ///< Scattered at most once.
+
+  /// Adds what another channel's path of the same sample has found.
+  LayerSample& operator+=(const LayerSample& other) {
+    normal += other.normal;
+    position += other.position;
+    transmittance += other.transmittance;
+    background += other.background;
+    unscattered += other.unscattered;
+    at_most_once += other.at_most_once;
+    return *this;
+  }
 };
 
 /// Sums over the paths of each pixel, in double precision.

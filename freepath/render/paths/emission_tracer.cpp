@@ -9,8 +9,9 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Sets these flights' streams apart from those of paths, which never have so many flights.
-constexpr uint32_t kStreams = 1U << 31;
+/// Sets these flights' streams apart from those of paths, which never have so many flights, and
+/// from those of sample sequences (kSampleStreams).
+constexpr uint32_t kStreams = 0xA0000000U;
 
 }  // namespace
 

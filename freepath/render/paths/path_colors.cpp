@@ -30,6 +30,14 @@ MediumChannels only(const MediumChannels& channels, int channel) {
   return one;
 }
 
+/// Whether one path carries channels of different extinction.
+bool carries_colours(const WalkSettings& walk) {
+  MediumChannels coloured;
+  coloured.count = 3;
+  coloured.components.emplace_back().sigma_s = {1, 2, 3};
+  return shares_paths(coloured, walk);
+}
+
 /// Any number of a stream that nothing else uses.
 double shift_of(uint64_t seed) {
   RandomStream random(seed, 0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU);
@@ -43,7 +51,11 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, const WalkSet
   const SpectrumValues first =
       mode == ColorMode::kRgb ? scene.spectra->in_rgb() : spectra_of_sample(0);
   for (const SceneMedium& medium : scene.media) {
-    if (!shares_paths(medium.bind(first).channels, walk)) paths_per_sample_ = first.channels();
+    // Extinctions that are equal at the wavelengths of one sample may differ at those of others.
+    const bool shares = mode == ColorMode::kRgb || medium.is_grey(*scene.spectra)
+                            ? shares_paths(medium.bind(first).channels, walk)
+                            : carries_colours(walk);
+    if (!shares) paths_per_sample_ = first.channels();
   }
   constant_.resize(scene.media.size());
   for (std::size_t i = 0; i < scene.media.size(); ++i) {

@@ -36,13 +36,14 @@ struct ScenePath {
   float emission_share = 1;
   int hero = 0;  ///< The channel that decides where channels part.
   bool only_hero = false;
+  bool is_coloured = false;  ///< It has met something that may tell wavelengths apart.
   bool is_dead = false;
 
   uint32_t pixel = 0;
   uint32_t sample_key = 0;  ///< Of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.
   uint32_t scatterings = 0;
-  uint32_t result = 0;  ///< Place among the job's samples.
+  uint32_t result = 0;  ///< Place among the paths of the job's samples.
   int channel = -1;     ///< The one channel that it carries, or -1.
   uint64_t lookups = 0;
   float distance = 0;  ///< Flown from the camera, until the first event [world].

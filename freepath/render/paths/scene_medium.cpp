@@ -57,9 +57,11 @@ void set_temperature(const TemperatureEmission& emission, const SpectrumValues& 
   const auto temperature = [&](double value) { return (value - emission.offset) * emission.scale; };
   const double hottest = std::max(temperature(range.low), temperature(range.high));
   if (!(hottest > kCoolest)) return;
-  const auto nodes = std::clamp(static_cast<std::size_t>(hottest / kTableStep) + 2, std::size_t{16},
-                                kLargestTable);
-  const float step = (range.high - range.low) / static_cast<float>(nodes - 1);
+  const double wanted = std::clamp(hottest / kTableStep, 16.0, double{kLargestTable});
+  const auto nodes = static_cast<std::size_t>(wanted);
+  // Of a field that is the same everywhere any step will do.
+  const float width = range.high > range.low ? range.high - range.low : 1.0F;
+  const float step = width / static_cast<float>(nodes - 1);
   std::array<std::vector<float>, kMaxChannels> tables;
   for (std::size_t i = 0; i < nodes; ++i) {
     const double value = range.low + static_cast<double>(step) * static_cast<double>(i);

@@ -12,7 +12,7 @@ constexpr float kShadowLength = 1 - 1e-4F;
 
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
   const Channels& c = path.throughput;
-  return setup_.factory->sees_rgb() && c == Channels(c[0]);
+  return setup_.factory->sees_rgb() && !path.is_coloured && c == Channels(c[0]);
 }
 
 const SpectrumValues& SceneWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
@@ -117,6 +117,7 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
     return;
   }
   path.throughput *= next->weight;
+  path.is_coloured = true;  // equal at these wavelengths is not equal at all
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
   path.scattered_from = position;

@@ -36,7 +36,7 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
       emissions_(*setup.scene, setup.slots) {}
 
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
-  results_.assign(job.pixels * job.samples, PathSample{});
+  results_.assign(job.pixels * job.samples * setup_.factory->paths_per_sample(), PathSample{});
   layers_.begin(film, results_.size());
   window_ = film.window();
   job_counts_ = {};
@@ -60,9 +60,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
       paths_[slot] = std::move(paths_[--active_]);
     }
   }
-  for (std::size_t i = 0; i < results_.size(); ++i) {
-    film.add(job.first_pixel + i / job.samples, results_[i], layers_[i]);
-  }
+  add_to_film(job, film);
   counts_.merge(job_counts_);
   return true;
 }
@@ -75,7 +73,7 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
   const auto channel = static_cast<int>(number % per_sample);
   const std::size_t pixel = place % job.pixels;
   const auto sample = static_cast<uint32_t>(place / job.pixels);
-  path.result = static_cast<uint32_t>(pixel * job.samples + sample);
+  path.result = static_cast<uint32_t>((pixel * job.samples + sample) * per_sample) + channel;
   path.pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + pixel));
   const uint32_t sample_number = job.first_sample + sample;
   path.sample_key = sample_number * static_cast<uint32_t>(per_sample) + channel;
@@ -255,23 +253,46 @@ Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
 
 void SceneWavefront::finish(ScenePath& path) {
   PathSample& sample = results_[path.result];
-  sample.lookups += static_cast<float>(path.lookups);
+  sample.lookups = static_cast<float>(path.lookups);
   if (!is_finite(path.radiance) || !is_finite(path.rgb)) {
     ++job_counts_.overflows;
     return;
   }
-  const Spectrum radiance = rgb_of(path, path.radiance, path.rgb);
-  sample.radiance += radiance;
-  if (layers_.on()) layers_.end(path.result, path.scatterings, radiance);
-  const auto share = 1.0F / static_cast<float>(setup_.factory->paths_per_sample());
-  sample.alpha += path.sample.alpha * share;
-  sample.albedo += path.sample.albedo * share;
-  const float weight = path.sample.depth_weight * share;
-  const float total = sample.depth_weight + weight;
-  if (total > 0) {
-    sample.depth = (sample.depth * sample.depth_weight + path.sample.depth * weight) / total;
+  sample.radiance = rgb_of(path, path.radiance, path.rgb);
+  if (layers_.on()) layers_.end(path.result, path.scatterings, sample.radiance);
+  sample.alpha = path.sample.alpha;
+  sample.albedo = path.sample.albedo;
+  sample.depth = path.sample.depth;
+  sample.depth_weight = path.sample.depth_weight;
+}
+
+void SceneWavefront::add_to_film(const PathJob& job, Film& film) const {
+  const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
+  const float share = 1.0F / static_cast<float>(per_sample);
+  for (std::size_t i = 0; i < job.pixels * job.samples; ++i) {
+    // The paths of the channels, always in the same order.
+    PathSample sum = results_[i * per_sample];
+    LayerSample layers = layers_[i * per_sample];
+    if (per_sample > 1) {
+      sum = {};
+      layers = {};
+      for (std::size_t c = 0; c < per_sample; ++c) {
+        const PathSample& part = results_[i * per_sample + c];
+        sum.radiance += part.radiance;
+        sum.lookups += part.lookups;
+        sum.alpha += part.alpha * share;
+        sum.albedo += part.albedo * share;
+        const float weight = part.depth_weight * share;
+        if (weight > 0) {
+          const float total = sum.depth_weight + weight;
+          sum.depth = (sum.depth * sum.depth_weight + part.depth * weight) / total;
+          sum.depth_weight = total;
+        }
+        layers += layers_[i * per_sample + c];
+      }
+    }
+    film.add(job.first_pixel + i / job.samples, sum, layers);
   }
-  sample.depth_weight = total;
 }
 
 }  // namespace freepath

@@ -79,6 +79,7 @@ class SceneWavefront {
   Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
   Spectrum transmittance_of(const ScenePath& path) const;
   void finish(ScenePath& path);
+  void add_to_film(const PathJob& job, Film& film) const;
 
   const SceneSetup& setup_;
   const PathScene& scene_;

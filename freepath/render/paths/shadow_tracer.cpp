@@ -9,30 +9,38 @@ namespace {
 
 /// Segments of one shadow ray draw from streams far apart; no path has so many flights.
 constexpr int kSegmentShift = 26;
-constexpr uint32_t kMostSegments = 31;  // of different streams
+constexpr uint32_t kOrderedSegments = 31;
+/// Those beyond draw from streams by hash, above all others.
+constexpr uint32_t kHashedStreams = 0xE0000000U;
+
+uint32_t stream_of(uint32_t flight, uint32_t segment) {
+  const uint32_t stream = stream_number(StreamPurpose::kShadowWalk, flight);
+  if (segment < kOrderedSegments) return stream + (segment << kSegmentShift);
+  return kHashedStreams | philox({stream, segment, 0, 0}, {0, 0})[0] >> 3;
+}
 
 }  // namespace
 
-void ShadowTracer::add_segment(uint32_t number, const Shadow& shadow, const ScenePath& path,
-                               MediumId medium, float begin, float end, uint32_t segment) {
+void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, MediumId medium, float begin,
+                               float end) {
   if (medium == kVacuum || !(begin < end)) return;
   const auto& walkers = path.colors->media[medium]->walkers;
   const Walker& walker = walkers[path.channel < 0 ? 0 : path.channel];
-  auto [batch, slot] = batches_.add(walker, number);
+  auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
+  segments_.emplace_back(1.0F);
   set_ray(batch.rays, slot, shadow.origin + shadow.direction * begin, shadow.direction,
           end - begin);
   batch.rays.pixel[slot] = path.pixel;
   batch.rays.sample[slot] = path.sample_key;
-  batch.rays.stream[slot] = stream_number(StreamPurpose::kShadowWalk, path.flights) +
-                            (std::min(segment, kMostSegments) << kSegmentShift);
+  batch.rays.stream[slot] = stream_of(path.flights, shadow.segments++);
 }
 
-void ShadowTracer::trace_surfaces(uint32_t number, Shadow& shadow, const ScenePath& path) {
+void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
+  shadow.first_segment = static_cast<uint32_t>(segments_.size());
   if (!scene_.surfaces) {
-    add_segment(number, shadow, path, shadow.medium, 0, shadow.distance, 0);
+    add_segment(shadow, path, shadow.medium, 0, shadow.distance);
     return;
   }
-  uint32_t segment = 0;
   float begin = 0;
   MediumId medium = shadow.medium;
   Vec3f origin = shadow.origin;
@@ -45,7 +53,7 @@ void ShadowTracer::trace_surfaces(uint32_t number, Shadow& shadow, const ScenePa
       return;
     }
     for (const BoundaryCrossing& crossing : crossings.all()) {
-      add_segment(number, shadow, path, medium, begin, passed + crossing.t, segment++);
+      add_segment(shadow, path, medium, begin, passed + crossing.t);
       begin = passed + crossing.t;
       medium = medium_beyond(scene_.shapes[crossing.shape], crossing.enters, medium);
     }
@@ -54,29 +62,36 @@ void ShadowTracer::trace_surfaces(uint32_t number, Shadow& shadow, const ScenePa
     passed = begin + std::max(1e-5F * begin, 1e-6F);
     origin = shadow.origin + shadow.direction * passed;
   }
-  add_segment(number, shadow, path, medium, begin, shadow.distance, segment);
+  add_segment(shadow, path, medium, begin, shadow.distance);
 }
 
 void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {
   if (shadows_.empty()) return;
   batches_.clear();
-  for (uint32_t i = 0; i < shadows_.size(); ++i) {
-    trace_surfaces(i, shadows_[i], paths[shadows_[i].owner]);
+  segments_.clear();
+  owners_.clear();
+  for (Shadow& shadow : shadows_) {
+    trace_surfaces(shadow, paths[shadow.owner]);
+    owners_.resize(segments_.size(), shadow.owner);
   }
   for (WalkBatches::Batch* const batch : batches_.finish()) {
     batch->walker->transmittance(batch->rays, flights_, statistics);
     const int channels = batch->walker->transmittance_channels();
     for (std::size_t i = 0; i < batch->owners.size(); ++i) {
-      Shadow& shadow = shadows_[batch->owners[i]];
+      const uint32_t segment = batch->owners[i];
       if (channels == 1) {
-        shadow.radiance *= flights_.weight[0][i];
+        segments_[segment] = Channels(flights_.weight[0][i]);
       } else {
-        for (int c = 0; c < channels; ++c) shadow.radiance[c] *= flights_.weight[c][i];
+        for (int c = 0; c < channels; ++c) segments_[segment][c] = flights_.weight[c][i];
       }
-      paths[shadow.owner].lookups += flights_.lookups[i];
+      paths[owners_[segment]].lookups += flights_.lookups[i];
     }
   }
-  for (const Shadow& shadow : shadows_) {
+  for (Shadow& shadow : shadows_) {
+    // In the order of the ray's way, whatever batches there were.
+    for (uint32_t i = 0; i < shadow.segments; ++i) {
+      shadow.radiance *= segments_[shadow.first_segment + i];
+    }
     ScenePath& path = paths[shadow.owner];
     (shadow.is_rgb ? path.rgb : path.radiance) += shadow.radiance;
   }

@@ -39,14 +39,16 @@ class ShadowTracer {
     Channels radiance;
     uint32_t owner;
     bool is_rgb;
+    uint32_t first_segment = 0, segments = 0;
   };
 
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
-  void trace_surfaces(uint32_t number, Shadow& shadow, const ScenePath& path);
-  void add_segment(uint32_t number, const Shadow& shadow, const ScenePath& path, MediumId medium,
-                   float begin, float end, uint32_t segment);
+  void trace_surfaces(Shadow& shadow, const ScenePath& path);
+  void add_segment(Shadow& shadow, const ScenePath& path, MediumId medium, float begin, float end);
 
   const PathScene& scene_;
+  std::vector<Channels> segments_;  // transmittances, ray after ray, each in the order of its way
+  std::vector<uint32_t> owners_;    // of the segments
   WalkBatches batches_;
   FlightStream flights_;
   std::vector<Shadow> shadows_;

@@ -251,6 +251,10 @@ class MediumReader {
       if (list_.type_of("Le")) {
         fail_at(list_.location_of("Le"), "give a grid 'Le' or 'temperature', not both");
       }
+      if (list_.type_of("Lescale")) {
+        fail_at(list_.location_of("Lescale"),
+                "a grid 'Lescale' is not supported where there is 'temperature'");
+      }
       read_temperature(voxels(layout, "temperature"), component);
       component.radiance_scale = 1;
     } else {
@@ -299,6 +303,10 @@ class MediumReader {
     if (!grid->radiance.empty() && grid->sigma_a.empty()) {
       fail_at(list_.location_of("Le"), "'Le' needs 'sigma_a': what does not absorb does not emit");
     }
+    // As in pbrt, a grid that is not given is 1 everywhere.
+    const RgbSpectrum one = RgbSpectrum::unbounded(Vec3d(1), rgb_color_space("srgb"));
+    if (grid->sigma_a.empty()) grid->sigma_a.assign(layout.voxels(), one);
+    if (grid->sigma_s.empty()) grid->sigma_s.assign(layout.voxels(), one);
     grid->scale = nonnegative("scale", 1);
     grid->radiance_scale = nonnegative("Lescale", 1);
     grid->phase = phase();

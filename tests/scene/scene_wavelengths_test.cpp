@@ -1,0 +1,77 @@
+// Spectra that are the same at some wavelengths and not at others: what is equal at those of a
+// sample says nothing of the rest.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/scene/rendered_scenes.h"
+
+namespace freepath {
+namespace {
+
+/// Constant between 400 and 700 nm and 0 beyond, as the scene language has it.
+double band(double wavelength) { return wavelength >= 400 && wavelength <= 700 ? 0.5 : 0; }
+
+TEST(SceneWavelengths, AReflectanceIsNotGreyForBeingEqualAtFour) {
+  const std::string text = testing::film(4) + R"(
+    LookAt 0 0 5  0 0 0  0 1 0
+    Camera "perspective" "float fov" 20
+    Integrator "volpath" "integer maxdepth" 10
+    WorldBegin
+    LightSource "infinite" "rgb L" [ 1 1 1 ]
+    Material "diffuse" "spectrum reflectance" [ 400 0.5 700 0.5 ]
+    Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+  )";
+  const RgbColorSpace& space = rgb_color_space("srgb");
+  const Vec3d expected = space.from_xyz(observe(
+      [&](double wavelength) { return band(wavelength) * space.illuminant()(wavelength); }));
+  const testing::Picture picture =
+      testing::render_text(text, {.mode = ColorMode::kSpectral, .samples = 4096});
+  testing::expect_mean("band", picture, {expected.x, expected.y, expected.z},
+                       {.absolute = 5e-4, .largest_relative_error = 0.01});
+}
+
+TEST(SceneWavelengths, AMediumIsNotGreyForBeingEqualAtFour) {
+  // Whatever the wavelengths of the first sample are, which the seed decides.
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    const std::string text = testing::film(2) + R"(
+      LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
+      Camera "perspective" "float fov" 10
+      Integrator "volpath" "integer maxdepth" 10 "string tracker" "delta"
+      WorldBegin
+      LightSource "infinite" "rgb L" [ 1 1 1 ]
+      MakeNamedMedium "band" "string type" "homogeneous" "spectrum sigma_a" [ 300 0 900 0 ]
+        "spectrum sigma_s" [ 400 1 700 1 ]
+    )" + testing::medium_box("band", Vec3d(0), Vec3d(1));
+    const testing::Picture picture =
+        testing::render_text(text, {.mode = ColorMode::kSpectral, .samples = 64, .seed = seed});
+    testing::expect_sound(picture);
+    EXPECT_EQ(picture.paths, 2U * 2 * 64 * kMaxChannels) << "one for each channel, seed " << seed;
+  }
+}
+
+TEST(SceneWavelengths, PathsOfChannelsAddUpInOneOrder) {
+  const std::string text = testing::film(4) + R"(
+    LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
+    Camera "perspective" "float fov" 20
+    Integrator "volpath" "integer maxdepth" 100 "string tracker" "delta"
+    WorldBegin
+    LightSource "infinite" "rgb L" [ 1 1 1 ]
+    MakeNamedMedium "red" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.4 0.9 ]
+      "rgb sigma_s" [ 4 2 1 ]
+    MakeNamedMedium "blue" "string type" "homogeneous" "rgb sigma_a" [ 0.9 0.4 0.1 ]
+      "rgb sigma_s" [ 1 2 4 ]
+  )" + testing::medium_box("red", Vec3d(0), Vec3d(1, 1, 0.4)) +
+                           testing::medium_box("blue", Vec3d(0, 0, 0.5), Vec3d(1));
+  for (const ColorMode mode : testing::kColorModes) {
+    const testing::Picture one =
+        testing::render_text(text, {.mode = mode, .samples = 32, .threads = 1, .batch = 1});
+    const testing::Picture many =
+        testing::render_text(text, {.mode = mode, .samples = 32, .threads = 2, .batch = 2048});
+    EXPECT_EQ(one.image.values, many.image.values) << testing::name_of(mode);
+  }
+}
+
+}  // namespace
+}  // namespace freepath
