@@ -50,10 +50,12 @@ TEST(SceneFurnace, UniformGrid) {
                256);
 }
 
+// A grid that is not given would be 1.
 TEST(SceneFurnace, GridOfColours) {
   expect_white(furnace(R"(MakeNamedMedium "cloud" "string type" "rgbgrid" )"
                        R"("point3 p0" [ -1 -1 -1 ] "point3 p1" [ 1 1 1 ] )"
                        R"("integer nx" 2 "integer ny" 1 "integer nz" 2 )"
+                       R"("rgb sigma_a" [ 0 0 0  0 0 0  0 0 0  0 0 0 ] )"
                        "\"rgb sigma_s\" [ 1 2 3  2 2 .5  0 1 0  3 3 3 ]\n" +
                        medium_box("cloud", Vec3d(-1.01), Vec3d(1.01))),
                2048);
