@@ -169,7 +169,7 @@ TEST_F(CommandsTest, ExamplesOfTheHelpAreAccepted) {
       // The files are not there: that, and nothing else, is what may be wrong with the line.
       EXPECT_EQ(outcome.status, 1) << example << '\n' << outcome;
       bool names_file = false;
-      for (const char* ending : {".vdb: ", ".nvdb: ", ".hdr: ", ".exr: "}) {
+      for (const char* ending : {".vdb: ", ".nvdb: ", ".hdr: ", ".exr: ", ".pbrt: "}) {
         names_file |= outcome.messages.find(ending) != std::string::npos;
       }
       EXPECT_TRUE(names_file) << example << '\n' << outcome;
