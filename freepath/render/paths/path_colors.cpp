@@ -38,6 +38,21 @@ bool carries_colours(const WalkSettings& walk) {
   return shares_paths(coloured, walk);
 }
 
+/// Whether so much of a medium glows that its paths find the light without a guide: lines of their
+/// own cost half as much again. The volume that counts is that of as many equally bright cells.
+bool is_spread(const EmissionCells& cells, const SceneMedium& medium) {
+  constexpr double kSpread = 0.05;
+  double sum = 0;
+  double squares = 0;
+  for (const float power : cells.power) {
+    sum += power;
+    squares += double{power} * power;
+  }
+  if (squares == 0) return true;
+  const Vec3d size = medium.bounds().size();
+  return sum * sum / squares * cells.grid.cell_volume() > kSpread * size.x * size.y * size.z;
+}
+
 /// Any number of a stream that nothing else uses.
 double shift_of(uint64_t seed) {
   RandomStream random(seed, 0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU);
@@ -84,10 +99,14 @@ void ColorFactory::make_guides() {
   for (std::size_t i = 0; i < scene_.media.size(); ++i) {
     std::unique_ptr<const EmissionGuide>& guide = guides_.emplace_back();
     const std::shared_ptr<const MediumWalkers>& walkers = constant_[i];
-    if (walkers && !walkers->bound.channels.emits()) continue;
+    if (walkers && !walkers->bound.channels.emits()) {
+      glow_is_spread_.push_back(true);
+      continue;
+    }
     const bool has_rgb = walkers && mode_ == ColorMode::kRgb;
     guide = std::make_unique<const EmissionGuide>(
         has_rgb ? walkers->bound : scene_.media[i].bind(rgb_->spectra), scene_.origin);
+    glow_is_spread_.push_back(is_spread(guide->cells(), scene_.media[i]));
     if (!(guide->power() > 0)) guide.reset();
   }
 }

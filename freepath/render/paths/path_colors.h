@@ -43,6 +43,8 @@ class ColorFactory {
   bool depends_on_sample() const { return depends_on_sample_; }
   /// Directions towards the emission of a medium, null where there is none.
   const EmissionGuide* guide(std::size_t medium) const { return guides_[medium].get(); }
+  /// Whether so much of a medium glows that a guide costs more than it gives.
+  bool glow_is_spread(std::size_t medium) const { return glow_is_spread_[medium]; }
   /// R, G, B of the scene's spectra.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
   /// Whether paths without colour may see lights in R, G, B: wavelengths are rendered, and no
@@ -66,6 +68,7 @@ class ColorFactory {
   std::vector<std::shared_ptr<const MediumWalkers>> constant_;
   std::shared_ptr<const PathColors> rgb_;
   std::vector<std::unique_ptr<const EmissionGuide>> guides_;  // of media
+  std::vector<bool> glow_is_spread_;                          // of media
 };
 
 }  // namespace freepath

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "freepath/base/random.h"
@@ -27,8 +28,9 @@ struct SceneSetup {
   uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
   /// Russian roulette is played where no channel's throughput reaches this.
   float roulette_threshold = 0.25F;
-  /// Whether scatterings in emissive media also look for their light along lines of its own.
-  bool samples_emission = true;
+  /// Whether scatterings in emissive media also look for their light along lines of its own; where
+  /// nothing is said, if little of the medium glows.
+  std::optional<bool> samples_emission = {};
   std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
   /// Of the samples of a pass, from first_sample on.
   std::vector<std::shared_ptr<const PathColors>> colors;
@@ -67,7 +69,8 @@ class SceneWavefront {
   void scatter_in_medium(std::size_t slot, float t, std::size_t component);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
-    return setup_.samples_emission ? setup_.factory->guide(medium) : nullptr;
+    const bool wanted = setup_.samples_emission.value_or(!setup_.factory->glow_is_spread(medium));
+    return wanted ? setup_.factory->guide(medium) : nullptr;
   }
   void draw_emission(std::size_t slot, const EmissionGuide& guide, const Vec3f& position,
                      const PhaseFunction& phase, RandomStream& random);
