@@ -273,9 +273,21 @@ void PathWavefront::record_first_event(Path& path, std::size_t slot) const {
   path.depth = flights_.t[slot];
   const Spectrum& albedo = albedos_[flights_.component[slot]];
   path.albedo = albedo;
-  // Under weighted absorption the weight holds the albedo, which is no matter of depth.
-  const float mean_albedo = setup_.absorption == Absorption::kWeighted ? mean(albedo) : 1.0F;
-  path.depth_weight = mean_albedo > 0 ? weight / mean_albedo : 1.0F;
+  path.depth_weight = depth_weight(slot, albedo);
+}
+
+float PathWavefront::depth_weight(std::size_t slot, const Spectrum& albedo) const {
+  const Spectrum weight = channels_of(flights_.weight, slot, walker_->channels());
+  if (setup_.absorption != Absorption::kWeighted) return mean(weight);
+  // The weight of each channel holds its albedo, which is no matter of depth.
+  float sum = 0;
+  int carried = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    if (setup_.walkers.size() > 1 && walker_ != &setup_.walkers[c]) continue;
+    sum += albedo[c] > 0 ? weight[c] / albedo[c] : 1.0F;
+    ++carried;
+  }
+  return sum / static_cast<float>(carried);
 }
 
 void PathWavefront::record_layers(const Path& path, std::size_t slot) {

@@ -109,6 +109,9 @@ class PathWavefront {
   void sample_light(const Path& path, std::size_t slot, const Vec3f& position,
                     const Vec3f& direction, const PhaseFunction& phase, RandomStream& random);
   void record_first_event(Path& path, std::size_t slot) const;
+  /// How much the first event of a path counts for means over events: its probability in the mean
+  /// over the channels that the path carries, over that with which it came about.
+  float depth_weight(std::size_t slot, const Spectrum& albedo) const;
   void record_layers(const Path& path, std::size_t slot);
   void finish(const Path& path, int channel);
   void trace_shadows();

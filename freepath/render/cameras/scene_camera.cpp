@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "freepath/base/error.h"
+#include "freepath/render/lights/octahedral.h"
 
 namespace freepath {
 namespace {
@@ -105,20 +106,6 @@ Point2 wrap_octahedral(Point2 p) {
   return p;
 }
 
-/// The unit square → the unit sphere, equal areas to equal areas [Clarberg08]. The middle of the
-/// square is +z, its corners are -z, its edges' middles lie on the x and y axes.
-Vec3f octahedral_direction(Point2 p) {
-  const float u = 2 * p.x - 1;
-  const float v = 2 * p.y - 1;
-  const float inside = 1 - (std::abs(u) + std::abs(v));  // of the diamond that is the upper half
-  const float radius = 1 - std::abs(inside);
-  constexpr float kEighth = 0.25F * std::numbers::pi_v<float>;
-  const float angle = radius == 0 ? kEighth : kEighth * ((std::abs(v) - std::abs(u)) / radius + 1);
-  const float sine = radius * std::sqrt(2 - radius * radius);
-  return {std::copysign(sine * std::cos(angle), u), std::copysign(sine * std::sin(angle), v),
-          std::copysign(1 - radius * radius, inside)};
-}
-
 }  // namespace
 
 SceneCamera::Projective::Projective(const PerspectiveCamera& camera, const Matrix4d& matrix,
@@ -176,7 +163,8 @@ CameraRay SceneCamera::Projective::ray(float film_x, float film_y, float lens_u,
 CameraRay SceneCamera::Spherical::ray(float film_x, float film_y) const {
   const Point2 p{film_x * per_width, film_y * per_height};
   if (mapping == SphericalMapping::kEqualArea) {
-    const Vec3f local = octahedral_direction(wrap_octahedral(p));
+    const Point2 within = wrap_octahedral(p);
+    const Vec3f local = direction_from_octahedral({within.x, within.y});
     return {origin, (right * local.x + up * local.z + ahead * local.y).normalized()};
   }
   const float polar = std::numbers::pi_v<float> * p.y;
