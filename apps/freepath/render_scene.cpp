@@ -21,13 +21,6 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-Interpolation parse_interpolation(const std::string& name) {
-  if (name == "nearest") return Interpolation::kNearest;
-  if (name == "trilinear") return Interpolation::kTrilinear;
-  if (name == "stochastic") return Interpolation::kStochastic;
-  fail("there is no interpolation '{}'; known are nearest, trilinear, stochastic", name);
-}
-
 /// What the command line says, else the scene, else what is standard.
 RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
   RenderSettings settings = plan.settings;
@@ -46,11 +39,8 @@ RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
   walk.transmittance =
       to_string(parse_method(walk.transmittance, transmittance_infos()), transmittance_infos());
   settings.crop = plan.film.crop ? plan.film.crop : picture.crop;
-  if (plan.interpolation) {
-    walk.interpolation = *plan.interpolation;
-  } else if (!picture.interpolation.empty()) {
-    walk.interpolation = parse_interpolation(picture.interpolation);
-  }
+  walk.interpolation =
+      plan.interpolation.value_or(picture.interpolation.value_or(walk.interpolation));
   return settings;
 }
 

@@ -189,6 +189,17 @@ std::string method_name(const ParameterList& list, std::string_view name,
   return text;
 }
 
+std::optional<Interpolation> read_interpolation(const ParameterList& list) {
+  const std::string name = list.get_string("interpolation", "");
+  if (name.empty()) return {};
+  if (name == "nearest") return Interpolation::kNearest;
+  if (name == "stochastic") return Interpolation::kStochastic;
+  if (name == "trilinear") return Interpolation::kTrilinear;
+  fail_at(list.location_of("interpolation"),
+          "there is no interpolation {}; known are nearest, stochastic, trilinear",
+          in_quotes(name));
+}
+
 void read_integrator(BuildContext& context, PictureSettings& picture) {
   if (!context.pbrt.integrator) return;
   const PbrtEntity& integrator = *context.pbrt.integrator;
@@ -207,14 +218,7 @@ void read_integrator(BuildContext& context, PictureSettings& picture) {
   }
   picture.tracker = method_name(list, "tracker", tracker_infos());
   picture.transmittance = method_name(list, "transmittance", transmittance_infos());
-  picture.interpolation = list.get_string("interpolation", "");
-  constexpr std::string_view kInterpolations[] = {"", "nearest", "stochastic", "trilinear"};
-  if (std::find(std::begin(kInterpolations), std::end(kInterpolations), picture.interpolation) ==
-      std::end(kInterpolations)) {
-    fail_at(list.location_of("interpolation"),
-            "there is no interpolation {}; known are nearest, stochastic, trilinear",
-            in_quotes(picture.interpolation));
-  }
+  picture.interpolation = read_interpolation(list);
   pass_over(list, {"lightsampler"});
   list.report_unused(context.diagnostics);
 }

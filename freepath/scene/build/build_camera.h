@@ -22,7 +22,8 @@ struct PictureSettings {
   bool all_layers = false;   ///< A film of type 'gbuffer'.
   std::optional<Crop> crop;  ///< In fractions, which any size of the film has.
   // Of our own parameters of the integrator; empty where they are not given.
-  std::string tracker, transmittance, interpolation;
+  std::string tracker, transmittance;
+  std::optional<Interpolation> interpolation;
 };
 
 /// The film's size [pixels].
