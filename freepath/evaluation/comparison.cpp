@@ -54,18 +54,36 @@ RenderSettings settings_of(const ComparisonSettings& settings, const Configurati
   return render;
 }
 
-/// Tries every configuration on a pixel, so that what can't work is known at once.
-void check_configurations(const Subject& subject, const ComparisonSettings& settings) {
-  for (const Configuration& configuration : settings.configurations) {
-    RenderSettings render = settings_of(settings, configuration);
-    render.samples = 1;
-    render.crop = Crop{.x0 = 0, .y0 = 0, .x1 = 1, .y1 = 1};
+/// Renders a pixel, so that what can't work is known at once.
+void try_configuration(const Subject& subject, const ComparisonSettings& settings,
+                       const Configuration& configuration) {
+  RenderSettings render = settings_of(settings, configuration);
+  render.samples = 1;
+  render.crop = Crop{.x0 = 0, .y0 = 0, .x1 = 1, .y1 = 1};
+  subject.render(render, {});
+}
+
+/// The configurations as they can be run.
+std::vector<Configuration> tried_configurations(const Subject& subject,
+                                                const ComparisonSettings& settings) {
+  std::vector<Configuration> configurations = settings.configurations;
+  for (Configuration& configuration : configurations) {
     try {
-      subject.render(render, {});
+      try_configuration(subject, settings, configuration);
     } catch (const Error& error) {
-      fail("{}: {}", configuration.tracker, error.what());
+      const std::string reason = error.what();
+      if (!settings.may_interpolate || configuration.interpolation != Interpolation::kStochastic) {
+        fail("{}: {}", configuration.tracker, reason);
+      }
+      configuration.interpolation = Interpolation::kTrilinear;
+      try {
+        try_configuration(subject, settings, configuration);
+      } catch (const Error&) {
+        fail("{}: {}", configuration.tracker, reason);
+      }
     }
   }
+  return configurations;
 }
 
 /// Runs, and what they leave behind until all are done.
@@ -76,13 +94,13 @@ class Experiment {
       : subject_(subject), settings_(settings), progress_(progress) {}
 
   Comparison run() {
-    check_configurations(subject_, settings_);
+    configurations_ = tried_configurations(subject_, settings_);
     name_configurations();
     get_references();
-    pictures_.resize(settings_.configurations.size());
-    snapshots_.resize(settings_.configurations.size());
+    pictures_.resize(configurations_.size());
+    snapshots_.resize(configurations_.size());
     for (int repeat = 0; repeat < settings_.repeats; ++repeat) {
-      const std::size_t count = settings_.configurations.size();
+      const std::size_t count = configurations_.size();
       for (std::size_t i = 0; i < count; ++i) {
         run_once((i + static_cast<std::size_t>(repeat)) % count, repeat);
       }
@@ -125,7 +143,7 @@ class Experiment {
   }
   /// Share of the work that references take.
   double reference_share() const {
-    const double runs = settings_.time * static_cast<double>(settings_.configurations.size());
+    const double runs = settings_.time * static_cast<double>(configurations_.size());
     const double reference = settings_.reference.file.empty() ? settings_.reference.time : 0;
     return runs + reference > 0 ? reference / (runs + reference) : 0;
   }
@@ -133,6 +151,7 @@ class Experiment {
   const Subject& subject_;
   const ComparisonSettings& settings_;
   const ComparisonProgressFunction& progress_;
+  std::vector<Configuration> configurations_;
   Clock clock_;
   Comparison result_;
   std::vector<std::vector<PixelEstimates>> pictures_;          // of each run
@@ -140,7 +159,7 @@ class Experiment {
 };
 
 void Experiment::name_configurations() {
-  const std::vector<Configuration>& all = settings_.configurations;
+  const std::vector<Configuration>& all = configurations_;
   const auto differs = [&](auto part) {
     return std::any_of(all.begin(), all.end(), [&](const Configuration& configuration) {
       return configuration.*part != all.front().*part;
@@ -174,7 +193,7 @@ void Experiment::get_references() {
   std::optional<std::size_t> nearest;
   std::optional<std::size_t> trilinear;
   const double share = reference_share();
-  for (const Configuration& configuration : settings_.configurations) {
+  for (const Configuration& configuration : configurations_) {
     const bool is_nearest = configuration.interpolation == Interpolation::kNearest;
     std::optional<std::size_t>& place = is_nearest ? nearest : trilinear;
     if (!place) {
@@ -207,7 +226,7 @@ void Experiment::run_once(std::size_t which, int repeat) {
   render.time_limit = settings_.time / settings_.repeats;
   render.samples = (settings_.samples + settings_.repeats - 1) / settings_.repeats;
   snapshots_[which].emplace_back();
-  const auto runs = static_cast<double>(settings_.configurations.size() * settings_.repeats);
+  const auto runs = static_cast<double>(configurations_.size() * settings_.repeats);
   const double done = static_cast<double>(repeat) * result_.configurations.size() +
                       static_cast<double>((which + result_.configurations.size() -
                                            repeat % result_.configurations.size()) %
@@ -288,8 +307,9 @@ void Experiment::find_efficiencies() {
       const ComparisonRun& mine = result.runs[repeat];
       const ComparisonRun& theirs = baseline.runs[repeat];
       const bool positive = mine.error.mse > 0 && theirs.error.mse > 0;
-      ratios.push_back(
-          positive ? theirs.error.mse * theirs.seconds / (mine.error.mse * mine.seconds) : 0);
+      ratios.push_back(positive ? theirs.error.mse * theirs.cpu_seconds /
+                                      (mine.error.mse * mine.cpu_seconds)
+                                : 0);
     }
     result.efficiency = geometric_interval(ratios);
   }

@@ -24,6 +24,8 @@ struct ComparisonSettings {
   /// both, whichever ends first. 0: unlimited.
   double time = 10;
   uint32_t samples = 0;
+  /// Runs methods that refuse stochastic interpolation with trilinear one, whose field is the same.
+  bool may_interpolate = false;
   int repeats = 5;      ///< Independent runs of each configuration.
   uint64_t seed = 0;    ///< Of all runs; each gets one of its own.
   double level = 1e-3;  ///< Probability that any of all bias tests raises a false alarm.
@@ -62,7 +64,7 @@ struct ConfigurationResult {
   BiasTest bias;            ///< Of all runs together.
   /// Whether every |z| is within Comparison::threshold.
   bool passes_bias_test = false;
-  /// 1/(MSE · seconds) over that of the baseline in the same round, where both can be told.
+  /// 1/(MSE · CPU seconds) over that of the baseline in the same round, where both can be told.
   std::optional<Interval> efficiency;
 
   /// Of a figure over the runs.

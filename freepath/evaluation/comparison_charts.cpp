@@ -25,7 +25,7 @@ void mark_best(std::vector<ChartBar>& bars, bool larger_is_better) {
 
 NamedFigure efficiency_chart(const Comparison& comparison) {
   BarChart chart{.title = "Efficiency",
-                 .axis = {.label = "1/(MSE · time) over that of " +
+                 .axis = {.label = "1/(MSE · CPU time) over that of " +
                                    comparison.configurations[comparison.baseline].name,
                           .minimum = 0},
                  .bars = {},

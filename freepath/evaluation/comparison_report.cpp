@@ -81,7 +81,7 @@ PageTable table_of(const Comparison& comparison, bool errors) {
   if (errors) {
     table.columns.push_back(
         {.name = "efficiency",
-         .meaning = fmt::format("1/(MSE · time) over that of {}, round by round",
+         .meaning = fmt::format("1/(MSE · CPU time) over that of {}, round by round",
                                 comparison.configurations[comparison.baseline].name)});
     table.columns.push_back({.name = "bias test",
                              .meaning = "whether the distance from the reference is explained by "
@@ -213,7 +213,8 @@ std::string method_text(const Comparison& comparison) {
   return fmt::format(
       "Each method was run {} times with seeds of its own. A round runs all methods, beginning "
       "with another one each time, so that what slows the machine down meets all alike; "
-      "efficiencies, 1/(MSE · time), are relative to {} in the same round, and their intervals are "
+      "efficiencies, 1/(MSE · CPU time), are relative to {} in the same round, and their intervals "
+      "are "
       "Student's, of the rounds' logarithms. MSE is stated less the reference's own variance, so "
       "it estimates that of the method alone. The bias test compares all runs of a method "
       "together with the reference, the variances of both included: the means of the channels "
