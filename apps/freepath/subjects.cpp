@@ -45,39 +45,28 @@ std::string digest_of(const CLI::App& command, const std::vector<std::filesystem
   return digest.hex();
 }
 
-LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions& options) {
+LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions& options,
+                                  const PictureSize& size) {
   check_volume_options(command, options);
-  const UpAxis up = read_up(options);
-  const FilmPlan film;
-  const CameraOptions camera_options = read_camera(options, film);
-  const LightOptions light_options = read_lights(options);
-  LoadedSubject loaded;
-  loaded.settings = read_run_settings(options);
-  const auto lights = std::make_shared<const Lights>(make_lights(light_options, up));
-  loaded.medium = std::make_shared<const Medium>(load_medium(options, options.super_voxel));
-  const auto camera =
-      std::make_shared<const Camera>(make_camera(*loaded.medium, camera_options, up));
-  const TrackerChoice choice = choose_tracker(*loaded.medium);
-  loaded.automatic_tracker = choice.tracker;
-  loaded.reason = choice.reason;
-  Subject& subject = loaded.subject;
-  subject.name = names_of(options.volumes.files);
+  // All that can be wrong with the options is said before a file is read.
+  read_up(options);
+  read_camera(options, FilmPlan());
+  const LightOptions lights = read_lights(options);
+  std::vector<VolumeReport> report;
+  auto medium = std::make_shared<const Medium>(
+      make_medium(load_volumes(read_volumes(options), report), options.super_voxel));
+  LoadedSubject loaded = subject_of_medium(options, std::move(medium), size);
   std::vector<std::filesystem::path> files(options.volumes.files.begin(),
                                            options.volumes.files.end());
-  if (const auto* image = std::get_if<std::string>(&light_options.environment)) {
+  if (const auto* image = std::get_if<std::string>(&lights.environment)) {
     files.emplace_back(*image);
   }
-  subject.digest = digest_of(command, files);
-  subject.width = camera->width();
-  subject.height = camera->height();
-  subject.render = [medium = loaded.medium, camera, lights](const RenderSettings& settings,
-                                                            const ProgressFunction& progress) {
-    return render(*medium, *camera, *lights, settings, progress);
-  };
+  loaded.subject.digest = digest_of(command, files);
   return loaded;
 }
 
-LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& options) {
+LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& options,
+                                 const std::optional<PictureSize>& size) {
   check_scene_options(command, options);
   ScenePlan plan;
   plan.file = options.volumes.files[0];
@@ -85,9 +74,11 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   plan.color = read_color(options);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
   BuildOptions build;
-  if (command.count("--size") > 0) {
-    const PictureSize size = parse_size(options.size, "--size");
-    build.size = FilmSize{size.width, size.height};
+  if (size) {
+    build.size = FilmSize{size->width, size->height};
+  } else if (command.count("--size") > 0) {
+    const PictureSize wanted = parse_size(options.size, "--size");
+    build.size = FilmSize{wanted.width, wanted.height};
   }
   Diagnostics diagnostics;
   const auto built = std::make_shared<BuiltScene>(load_scene(plan.file, diagnostics, build));
@@ -125,14 +116,35 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
 
 }  // namespace
 
-Medium load_medium(const PictureOptions& options, int super_voxel) {
-  std::vector<VolumeReport> report;
-  return make_medium(load_volumes(read_volumes(options), report), super_voxel);
+LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<const Medium> medium,
+                                const PictureSize& size) {
+  const UpAxis up = read_up(options);
+  CameraOptions camera_options = read_camera(options, FilmPlan());
+  camera_options.width = size.width;
+  camera_options.height = size.height;
+  const auto camera = std::make_shared<const Camera>(make_camera(*medium, camera_options, up));
+  const auto lights = std::make_shared<const Lights>(make_lights(read_lights(options), up));
+  LoadedSubject loaded;
+  loaded.settings = read_run_settings(options);
+  const TrackerChoice choice = choose_tracker(*medium);
+  loaded.automatic_tracker = choice.tracker;
+  loaded.reason = choice.reason;
+  Subject& subject = loaded.subject;
+  subject.name = names_of(options.volumes.files);
+  subject.width = camera->width();
+  subject.height = camera->height();
+  subject.render = [medium, camera, lights](const RenderSettings& settings,
+                                            const ProgressFunction& progress) {
+    return render(*medium, *camera, *lights, settings, progress);
+  };
+  loaded.medium = std::move(medium);
+  return loaded;
 }
 
-LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options) {
-  return is_scene(options) ? load_scene_subject(command, options)
-                           : load_volume_subject(command, options);
+LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options,
+                           const std::optional<PictureSize>& size) {
+  if (is_scene(options)) return load_scene_subject(command, options, size);
+  return load_volume_subject(command, options, size ? *size : parse_size(options.size, "--size"));
 }
 
 }  // namespace freepath::program

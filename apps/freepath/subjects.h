@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
 #include "freepath/evaluation/subject.h"
 #include "freepath/media/medium.h"
@@ -25,10 +26,13 @@ struct LoadedSubject {
 };
 
 /// Loads volumes or a scene as the options say, and prints its warnings on standard error.
+/// @param size in place of that of the options or of the scene
 /// @throws Error as the loaders and builders, naming the option or file
-LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options);
+LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options,
+                           const std::optional<PictureSize>& size = {});
 
-/// The medium of the volumes of the options, with super-voxels of another edge [voxels].
-Medium load_medium(const PictureOptions& options, int super_voxel);
+/// The same of volumes, with another medium and in another size. It has no digest.
+LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<const Medium> medium,
+                                const PictureSize& size);
 
 }  // namespace freepath::program

@@ -1,7 +1,6 @@
 #include "freepath/evaluation/comparison.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,21 +10,12 @@
 #include <utility>
 
 #include "freepath/base/error.h"
-#include "freepath/base/random.h"
 #include "freepath/evaluation/flip.h"
+#include "freepath/evaluation/process_time.h"
+#include "freepath/evaluation/run_seed.h"
 
 namespace freepath {
 namespace {
-
-/// Seconds that the threads of this process have worked.
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 class Clock {
  public:
@@ -37,19 +27,12 @@ class Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A seed for each run, as good as independent of the others.
-uint64_t seed_of(uint64_t seed, std::size_t configuration, int repeat) {
-  const auto words =
-      philox({static_cast<uint32_t>(configuration), static_cast<uint32_t>(repeat), 0x636F6D70U, 0},
-             {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)}, 10);
-  return (uint64_t{words[1]} << 32) | words[0];
-}
-
 RenderSettings settings_of(const ComparisonSettings& settings, const Configuration& configuration) {
   RenderSettings render = settings.render;
   render.walk.tracker = configuration.tracker;
   render.walk.transmittance = configuration.transmittance;
   render.walk.interpolation = configuration.interpolation;
+  render.whole_passes = true;
   render.layers = {Layer::kVariance, Layer::kSamples, Layer::kLookups};
   return render;
 }
@@ -167,15 +150,23 @@ void Experiment::name_configurations() {
   };
   const bool trackers = differs(&Configuration::tracker);
   const bool transmittances = differs(&Configuration::transmittance);
-  const bool interpolations = differs(&Configuration::interpolation);
+  // Stochastic interpolation goes without saying, unless both are run.
+  const auto has_twin = [&](const Configuration& configuration) {
+    return std::any_of(all.begin(), all.end(), [&](const Configuration& other) {
+      return other.tracker == configuration.tracker &&
+             other.transmittance == configuration.transmittance &&
+             other.interpolation != configuration.interpolation;
+    });
+  };
   for (const Configuration& configuration : all) {
     std::string name;
     const auto append = [&](bool wanted, std::string_view part) {
       if (wanted) name += (name.empty() ? "" : " · ") + std::string(part);
     };
-    append(trackers || (!transmittances && !interpolations), configuration.tracker);
+    append(trackers || !transmittances, configuration.tracker);
     append(transmittances, configuration.transmittance);
-    append(interpolations, to_string(configuration.interpolation));
+    append(configuration.interpolation != Interpolation::kStochastic || has_twin(configuration),
+           to_string(configuration.interpolation));
     ConfigurationResult result;
     result.configuration = configuration;
     result.name = name;
@@ -222,7 +213,7 @@ std::function<void(const Film&)> Experiment::take_snapshots(std::vector<Snapshot
 void Experiment::run_once(std::size_t which, int repeat) {
   ConfigurationResult& result = result_.configurations[which];
   RenderSettings render = settings_of(settings_, result.configuration);
-  render.walk.seed = seed_of(settings_.seed, which, repeat);
+  render.walk.seed = run_seed(settings_.seed, which, repeat);
   render.time_limit = settings_.time / settings_.repeats;
   render.samples = (settings_.samples + settings_.repeats - 1) / settings_.repeats;
   snapshots_[which].emplace_back();
@@ -238,11 +229,11 @@ void Experiment::run_once(std::size_t which, int repeat) {
   report(step, begin);
   const Clock clock;
   render.on_pass = take_snapshots(snapshots_[which].back(), clock);
-  const double cpu_before = cpu_seconds();
+  const double cpu_before = process_cpu_seconds();
   const RenderResult rendered =
       subject_.render(render, progress_of(step, begin, (1 - share) / runs));
   ComparisonRun run;
-  run.cpu_seconds = cpu_seconds() - cpu_before;
+  run.cpu_seconds = process_cpu_seconds() - cpu_before;
   if (rendered.interrupted) throw Interrupted("interrupted: nothing is written");
   if (rendered.pixels_without_samples > 0) {
     fail("{}: {} pixels have no sample after {:.1f} s: give more --time, or fewer --repeats",

@@ -53,6 +53,7 @@ Reference make_reference(const Subject& subject, const ReferencePlan& plan,
                          const ProgressFunction& progress) {
   settings.samples = plan.samples;
   settings.time_limit = plan.time;
+  settings.whole_passes = true;
   settings.layers = {Layer::kVariance, Layer::kSamples};
   settings.walk.tracker = configuration.tracker;
   settings.walk.transmittance = configuration.transmittance;
