@@ -82,7 +82,7 @@ AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room
   } else if (room == AxisRoom::kLittle) {
     // A plot of things that are never negative begins at 0 if that is near.
     if (minimum > 0 && minimum < 0.4 * maximum && !axis.minimum) minimum = 0;
-    const double step = nice_step(maximum - minimum, 8);
+    const double step = nice_step(maximum - minimum, 8) / 4;
     if (!axis.minimum) minimum = std::floor(minimum / step + 1e-9) * step;
     if (!axis.maximum) maximum = std::ceil(maximum / step - 1e-9) * step;
   }

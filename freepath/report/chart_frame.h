@@ -34,7 +34,7 @@ class ValueRange {
 /// How far an axis reaches beyond the values on its own accord.
 enum class AxisRoom {
   kNone,   ///< Not at all.
-  kLittle  ///< To the next tick, or a few percent where it is logarithmic.
+  kLittle  ///< A few percent, to a round value where it is linear.
 };
 
 /// The scale of an axis: its given ends, and for others the values.
