@@ -58,6 +58,9 @@ void draw_grid_lines(SvgWriter& svg, const PlotAxis& axis, const SvgBox& plot, b
 
 void ValueRange::add(double value) {
   if (!std::isfinite(value) || (logarithmic_ && value <= 0)) return;
+  // Lengths and ends of axes must be finite numbers too.
+  constexpr double kLargest = 1e290;
+  value = std::clamp(value, logarithmic_ ? 1 / kLargest : -kLargest, kLargest);
   minimum_ = is_empty_ ? value : std::min(minimum_, value);
   maximum_ = is_empty_ ? value : std::max(maximum_, value);
   is_empty_ = false;
@@ -76,7 +79,7 @@ AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room
   maximum = axis.maximum.value_or(maximum);
   widen(axis, minimum, maximum);
   if (room == AxisRoom::kLittle && axis.logarithmic) {
-    const double factor = std::pow(maximum / minimum, 0.04);
+    const double factor = std::exp(0.04 * (std::log(maximum) - std::log(minimum)));
     if (!axis.minimum) minimum /= factor;
     if (!axis.maximum) maximum *= factor;
   } else if (room == AxisRoom::kLittle) {
@@ -92,7 +95,7 @@ AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room
 double PlotAxis::place(double value) const {
   constexpr double kReach = 20;  // lengths of the axis
   const double position = scale.position(value);
-  if (std::isnan(position)) return position;
+  if (std::isnan(position) || !std::isfinite(value)) return std::nan("");
   return from + (to - from) * std::clamp(position, -kReach, kReach);
 }
 

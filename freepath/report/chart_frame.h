@@ -48,7 +48,7 @@ struct PlotAxis {
   double from = 0, to = 0;  ///< Where its minimum and maximum are.
   std::vector<AxisTick> ticks = {};
 
-  /// NaN where the value has no place. Kept within reach of the plot, so that lines to values far
+  /// NaN where the value has no place, or is not finite. Kept within reach of the plot, so that lines to values far
   /// outside remain drawable.
   double place(double value) const;
 };

@@ -131,7 +131,7 @@ tbody td.best,tbody tr:hover td.best{background:var(--tint)}
 .tools .button{min-width:2.1rem}
 .where,.scale-shown{font-size:.8125rem;color:var(--soft);min-width:3.6em;text-align:right;
   font-variant-numeric:tabular-nums}
-.stage{position:relative;overflow:hidden;margin:0 auto;border-radius:6px;background:#000;
+.stage{position:relative;overflow:hidden;margin:0 auto;border-radius:6px;
   cursor:ew-resize;touch-action:pan-y;user-select:none;-webkit-user-select:none}
 .stage.zoomed-in{cursor:grab;touch-action:none}
 .stage.moving{cursor:grabbing}
