@@ -40,6 +40,7 @@ struct Chart {
   std::string title;
   ChartAxis x, y;
   std::vector<ChartSeries> series;
+  int width = 720, height = 450;  ///< Of the drawing, whose letters have a height of 12 to 16.
 };
 
 /// One bar.
@@ -56,11 +57,13 @@ struct BarChart {
   ChartAxis axis;  ///< Where it is logarithmic, bars begin at its left end.
   std::vector<ChartBar> bars;
   std::optional<double> mark_at = {};  ///< A line across all bars, such as 1 for "the same".
+  int width = 720;                     ///< Of the drawing; its height follows from the bars.
 };
 
 /// A whole SVG file, which needs no other: its colours are its own, and follow the viewer's choice
 /// of light or dark. Text in it is text. The same chart gives the same bytes.
-/// @throws Error where the lengths of a series' vectors do not fit together
+/// @throws Error where the lengths of a series' vectors do not fit together, or the ends that are
+/// given for an axis are no axis
 std::string to_svg(const Chart& chart);
 std::string to_svg(const BarChart& chart);
 

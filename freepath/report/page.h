@@ -88,7 +88,9 @@ struct Page {
 /// One HTML file that needs no other and no network: styles, scripts and pictures are inside. It
 /// follows the reader's choice of light or dark, has a switch for it, prints in black on white with
 /// all of its pictures, and can be read without scripts. Once its scripts ran, `<html>` has the
-/// attribute data-ready="yes", and data-errors with the number of errors that they met.
+/// attribute data-ready="yes", and data-errors with the number of errors that they met. With
+/// `?theme=light` or `?theme=dark` in its address it opens in that.
+/// @throws Error where a row of a table has not as many cells as there are columns
 std::string to_html(const Page& page);
 
 }  // namespace freepath

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+
+#include "freepath/base/error.h"
+#include "freepath/report/chart.h"
+#include "freepath/report/chart_frame.h"
+#include "freepath/report/markup.h"
+
+namespace freepath {
+
+namespace {
+
+constexpr double kMargin = 16;
+constexpr double kRow = 32;        // height of a bar and the gap to the next
+constexpr double kThickness = 18;  // of a bar
+constexpr double kNameGap = 10;
+constexpr double kValueGap = 8;
+constexpr int kValueDigits = 3;
+
+ValueRange range_of(const BarChart& chart) {
+  ValueRange range(chart.axis.logarithmic);
+  for (const ChartBar& bar : chart.bars) {
+    range.add(bar.value);
+    for (const std::optional<double>& end : {bar.low, bar.high}) {
+      if (end) range.add_interval_end(bar.value, *end);
+    }
+  }
+  if (chart.mark_at) range.add(*chart.mark_at);
+  if (!chart.axis.logarithmic) {
+    range.add(0);
+  } else if (!range.is_empty() && !chart.axis.minimum) {
+    // The shortest bar has a length: from the power of ten that is clearly below it.
+    range.add(std::pow(10.0, std::floor(std::log10(range.minimum() * 0.8))));
+  }
+  return range;
+}
+
+std::string value_text(const ChartBar& bar) { return readable_number(bar.value, kValueDigits); }
+
+/// Where everything is.
+struct BarLayout {
+  std::vector<std::string> title;
+  SvgBox plot;
+  PlotAxis axis;
+  double base = 0;  ///< x at which bars begin.
+  double height = 0;
+};
+
+/// The right end of a bar with its error bar, where its value is written.
+double right_end(const ChartBar& bar, const BarLayout& layout) {
+  double end = layout.base;
+  for (const std::optional<double>& value : {std::optional(bar.value), bar.low, bar.high}) {
+    const double place = value ? layout.axis.place(*value) : std::nan("");
+    if (std::isfinite(place)) end = std::max(end, place);
+  }
+  return std::min(end, layout.plot.right);
+}
+
+BarLayout layout_of(const BarChart& chart) {
+  BarLayout layout{wrapped(chart.title, kTitleSize, chart.width - 2 * kMargin),
+                   {},
+                   {scale_of(chart.axis, range_of(chart), AxisRoom::kNone)}};
+  double names = 0;
+  double values = 0;
+  for (const ChartBar& bar : chart.bars) {
+    names = std::max(names, text_width(bar.name, kLabelSize));
+    values = std::max(values, text_width(value_text(bar), kTickSize));
+  }
+  const double title_lines = static_cast<double>(layout.title.size());
+  SvgBox& plot = layout.plot;
+  plot.top = layout.title.empty() ? kMargin : 24 + 20 * title_lines;
+  plot.bottom = plot.top + kRow * static_cast<double>(std::max<std::size_t>(1, chart.bars.size()));
+  plot.left = kMargin + std::min(names, 0.45 * chart.width) + kNameGap;
+  // Beyond the longest bar there is room for its value.
+  plot.right = chart.width - kMargin - values - kValueGap;
+  layout.height = plot.bottom + kBottomAxisHeight + 4;
+  PlotAxis& axis = layout.axis;
+  axis.from = plot.left;
+  axis.to = plot.right;
+  axis.ticks = axis_ticks(axis.scale, std::max(2.0, plot.width() / 75));
+  const double zero = axis.scale.logarithmic() ? plot.left : axis.place(0);
+  layout.base = std::clamp(zero, plot.left, plot.right);
+  return layout;
+}
+
+void draw_bar(SvgWriter& svg, const ChartBar& bar, const BarLayout& layout, double middle) {
+  const double end = layout.axis.place(bar.value);
+  if (!std::isfinite(end)) return;
+  svg.begin_ink(bar.is_best ? "best" : "bar");
+  svg.add(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="currentColor"/>)",
+          coordinate(std::min(layout.base, end)), coordinate(middle - kThickness / 2),
+          coordinate(std::abs(end - layout.base)), coordinate(kThickness));
+  svg.end_group();
+  if (!bar.low || !bar.high) return;
+  const double high = layout.axis.place(*bar.high);
+  double low = layout.axis.place(*bar.low);
+  // On a logarithmic axis 0 and less is beyond the left end.
+  if (std::isnan(low) && std::isfinite(*bar.low)) low = layout.plot.left - 10;
+  if (!std::isfinite(low) || !std::isfinite(high)) return;
+  svg.add(R"(<path d="M{0} {1}H{2}M{0} {3}v8M{2} {3}v8" stroke="currentColor" )"
+          R"(stroke-width="1.3"/>)",
+          coordinate(low), coordinate(middle), coordinate(high), coordinate(middle - 4));
+}
+
+std::string summary_of(const BarChart& chart) {
+  std::string values;
+  for (const ChartBar& bar : chart.bars) {
+    values += fmt::format("{}{} {}", values.empty() ? "" : ", ", bar.name, value_text(bar));
+  }
+  return fmt::format("{}. {}: {}.", chart.title, chart.axis.label, values);
+}
+
+}  // namespace
+
+std::string to_svg(const BarChart& chart) {
+  const BarLayout layout = layout_of(chart);
+  const SvgBox& plot = layout.plot;
+  SvgWriter svg(chart.width, layout.height, chart.title, summary_of(chart));
+  svg.title(layout.title);
+  draw_vertical_grid(svg, layout.axis, plot);
+  svg.begin_clip(plot);
+  for (std::size_t i = 0; i < chart.bars.size(); ++i) {
+    draw_bar(svg, chart.bars[i], layout, plot.top + (static_cast<double>(i) + 0.5) * kRow);
+  }
+  if (chart.mark_at) {
+    const double x = layout.axis.place(*chart.mark_at);
+    if (std::isfinite(x)) svg.line(x, plot.top, x, plot.bottom, R"(stroke-dasharray="5 3")");
+  }
+  svg.end_clip();
+  draw_bottom_axis(svg, layout.axis, chart.axis.label, plot);
+  for (std::size_t i = 0; i < chart.bars.size(); ++i) {
+    const ChartBar& bar = chart.bars[i];
+    const double baseline = plot.top + (static_cast<double>(i) + 0.5) * kRow + 4.5;
+    const std::string_view weight = bar.is_best ? R"(font-weight="600")" : "";
+    svg.text(plot.left - kNameGap, baseline, TextAnchor::kEnd, kLabelSize, escape_markup(bar.name),
+             weight);
+    // A halo keeps the mark's line and the grid off the digits.
+    svg.text(right_end(bar, layout) + kValueGap, baseline, TextAnchor::kStart, kTickSize,
+             escape_markup(value_text(bar)),
+             fmt::format(R"(class="fpc-halo" stroke="#ffffff" stroke-width="4" )"
+                         R"(paint-order="stroke" {})",
+                         weight));
+  }
+  return std::move(svg).finished();
+}
+
+}  // namespace freepath
