@@ -53,6 +53,7 @@ int run(int argc, const char* const* argv) {
   add_generate_command(program);
   add_slab_command(program);
   add_diff_command(program);
+  add_lab_command(program);
   add_trackers_command(program);
   refuse_empty_values(program);
   try {

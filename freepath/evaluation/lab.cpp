@@ -31,10 +31,13 @@ const MethodInfo& info_of(const Method& method) {
                        [&](const MethodInfo& info) { return info.name == method.name; });
 }
 
-/// Each tracker walks with random numbers of its own, so that their errors are independent.
-uint64_t seed_of(uint64_t seed, std::string_view tracker) {
+/// Each tracker walks with random numbers of its own in each setting, so that their errors are
+/// independent.
+uint64_t seed_of(uint64_t seed, const LabSetting& setting, std::string_view tracker) {
   uint64_t hash = 0xCBF29CE484222325U;  // Fowler, Noll and Vo's
-  for (const char c : tracker) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
+  for (const std::string_view text : {std::string_view(setting.name), tracker}) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
+  }
   return seed + hash;
 }
 
@@ -141,15 +144,15 @@ class Lab {
       begin(fmt::format("{}: {}", findings.setting.name, tracker));
       const bool regular = tracker == "regular";
       const uint64_t paths = regular ? options_.paths / kRegularShare : options_.paths;
-      findings.trackers.push_back(
-          measure_tracker(findings.setting, findings.curves,
-                          walk_of(tracker, seed_of(options_.seed, tracker), paths), goes_on_));
+      findings.trackers.push_back(measure_tracker(
+          findings.setting, findings.curves,
+          walk_of(tracker, seed_of(options_.seed, findings.setting, tracker), paths), goes_on_));
     }
   }
 
   void evolve(LabFindings& findings) {
     for (const std::string& tracker : chromatic_trackers_of(findings.setting)) {
-      const LabWalk walk = walk_of(tracker, seed_of(options_.seed, tracker),
+      const LabWalk walk = walk_of(tracker, seed_of(options_.seed, findings.setting, tracker),
                                    std::min(options_.paths, kEvolvedPaths));
       begin(fmt::format("{}: throughput of {}", findings.setting.name, tracker));
       findings.along_ray.push_back(

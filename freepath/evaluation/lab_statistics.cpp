@@ -18,6 +18,9 @@ constexpr double kLargestExcess = 0.01;
 constexpr double kRounding = 2e-5;
 /// Bins of the test of a distribution, at most.
 constexpr double kTestBins = 32;
+/// What a bin of it expects at least, in weights of 1, and the contributions that it needs.
+constexpr double kFewestInTestBin = 1500;
+constexpr uint64_t kFewInBin = 100;
 /// What stands for an infinite distance.
 constexpr double kFar = 1000;
 
@@ -31,6 +34,38 @@ double z_of_p(double p) {
     (normal_two_sided_p(middle) > p ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+/// Neighbouring bins, together.
+struct MergedBin {
+  LabMoments moments;
+  double exact = 0;
+
+  /// Mean square of what paths contribute, in proportion to the exact mean: of fewer paths than
+  /// expected the squares are too small by as much as the sum. Unless the sum is lost in its noise.
+  double mean_square(uint64_t paths) const {
+    const double ratio = moments.squares / moments.sum;
+    const bool clear = moments.mean(paths) > 5 * moments.standard_error(paths);
+    return clear ? ratio * exact : moments.squares / static_cast<double>(paths);
+  }
+};
+
+/// Merges neighbours until each expects its share, by what is exact alone: a choice by what was
+/// seen would spoil the test.
+std::vector<MergedBin> merge_bins(std::span<const LabMoments> bins, std::span<const double> exact,
+                                  double paths) {
+  double whole = 0;
+  for (const double expected : exact) whole += expected;
+  const double share = std::max(whole / kTestBins, kFewestInTestBin / paths);
+  std::vector<MergedBin> merged(1);
+  double left = whole;
+  for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+    if (merged.back().exact >= share && left >= share) merged.emplace_back();
+    merged.back().moments.merge(bins[bin]);
+    merged.back().exact += exact[bin];
+    left -= exact[bin];
+  }
+  return merged;
 }
 
 }  // namespace
@@ -80,42 +115,34 @@ LabCheck check_mean(const LabMoments& moments, uint64_t paths, double exact) {
 LabCheck check_distribution(std::span<const LabMoments> bins, std::span<const double> exact,
                             uint64_t paths) {
   LabCheck check;
-  double whole = 0;
-  for (const double expected : exact) whole += expected;
   const auto n = static_cast<double>(paths);
   double distance = 0;
   double across = 0;
   double inner = 0;
   std::size_t freedom = 0;
   std::size_t heavy = 0;
-  LabMoments merged;
-  double expected = 0;
-  for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-    merged.merge(bins[bin]);
-    expected += exact[bin];
-    if (expected < whole / kTestBins && bin + 1 < bins.size()) continue;
-    check.estimate += merged.sum / n;
-    check.exact += expected;
-    const bool rare = merged.count < kFew;
-    if (!rare && merged.has_normal_mean(paths)) {
-      ++freedom;
-      const double square = merged.squares / n;
-      const double apart = merged.sum / n - expected;
-      distance += apart * apart / square;
-      across += apart * expected / square;
-      inner += expected * expected / square;
-    } else if (!rare) {
-      ++heavy;  // counts with the escapes, so to speak
+  for (const MergedBin& bin : merge_bins(bins, exact, n)) {
+    check.estimate += bin.moments.sum / n;
+    check.exact += bin.exact;
+    const bool few = bin.moments.count < kFewInBin;
+    if (few || !bin.moments.has_normal_mean(paths)) {  // counts with the escapes, so to speak
+      heavy += few ? 0 : 1;
+      continue;
     }
-    merged = {};
-    expected = 0;
+    ++freedom;
+    const double square = bin.mean_square(paths);
+    const double apart = bin.moments.sum / n - bin.exact;
+    distance += apart * apart / square;
+    across += apart * bin.exact / square;
+    inner += bin.exact * bin.exact / square;
   }
-  // Where all paths end in bins with the same weight, the last distance follows from the others.
-  const bool complete = 1 - inner < 1e-3;
   if (freedom < 2) {
     check.standing = heavy > 0 ? LabStanding::kHeavy : LabStanding::kRare;
     return check;
   }
+  // Where hardly a path ends elsewhere or with another weight, the last distance follows from the
+  // others.
+  const bool complete = n * (1 - inner) < kFewExpected;
   const double statistic = n * (complete ? distance : distance + across * across / (1 - inner));
   const auto degrees = static_cast<double>(complete ? freedom - 1 : freedom);
   check.p = std::isfinite(statistic) ? upper_gamma(0.5 * degrees, 0.5 * statistic) : 0;

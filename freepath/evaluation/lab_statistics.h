@@ -59,10 +59,10 @@ struct LabCheck {
 LabCheck check_mean(const LabMoments& moments, uint64_t paths, double exact);
 
 /// Sums of weights in bins, of which a path adds to one at most, against what is expected of each:
-/// Hotelling's form n dᵀ C⁻¹ d of the distances d of the means. C = D - m mᵀ, D the diagonal of the
-/// mean squares and m that of the expectations, is inverted by Sherman and Morrison's formula. With
-/// weights of 1 it is Pearson's test. Neighbours are merged until each bin expects a share of the
-/// whole; z is that of a normal deviate as unlikely.
+/// Hotelling's form n dᵀ C⁻¹ d of the distances d of the means. C = D - m mᵀ, m the exact means and
+/// D the diagonal of the mean squares (in proportion to m, as the weights seen have it), is
+/// inverted by Sherman and Morrison's formula. With weights of 1 it is Pearson's test. Neighbours
+/// are merged until each bin expects enough; z is that of a normal deviate as unlikely.
 LabCheck check_distribution(std::span<const LabMoments> bins, std::span<const double> exact,
                             uint64_t paths);
 
