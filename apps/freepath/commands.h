@@ -13,6 +13,7 @@ void add_slab_command(CLI::App& program);
 void add_diff_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_plan_command(CLI::App& program);
+void add_lab_command(CLI::App& program);
 void add_trackers_command(CLI::App& program);
 
 }  // namespace freepath::program

@@ -76,9 +76,14 @@ std::string now_text() {
 std::vector<Configuration> read_configurations(const Options& options,
                                                const std::string& automatic) {
   std::vector<Configuration> configurations;
-  for (const std::string& tracker : split_methods(options.trackers)) {
-    for (const std::string& transmittance : split_methods(options.transmittance)) {
-      for (const std::string& interpolation : split_methods(options.interpolation)) {
+  const auto list_of = [](std::string_view option, const std::string& text) {
+    return read_option(option, [&] { return split_methods(text); });
+  };
+  const auto transmittances = list_of("--transmittance", options.transmittance);
+  const auto interpolations = list_of("--interpolation", options.interpolation);
+  for (const std::string& tracker : list_of("--trackers", options.trackers)) {
+    for (const std::string& transmittance : transmittances) {
+      for (const std::string& interpolation : interpolations) {
         Configuration configuration;
         configuration.tracker = read_tracker(tracker, "--trackers");
         if (configuration.tracker == kAutoTracker) configuration.tracker = automatic;

@@ -36,9 +36,8 @@ Examples:
   freepath plan cloud.vdb --size 1920x1080 --albedo 0.999 --noise 0.02
   freepath plan scene.pbrt --json)";
 
-/// Pixels of a pilot's picture: enough to see all of the volume, few enough for a sample in a tenth
-/// of a second.
-constexpr double kPilotPixels = 120.0 * 68;
+/// Pixels of a pilot's picture: few enough for many samples of each, from which variance is known.
+constexpr double kPilotPixels = 64.0 * 36;
 
 struct Options {
   PictureOptions picture;

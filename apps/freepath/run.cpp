@@ -57,6 +57,7 @@ int run(int argc, const char* const* argv) {
   add_diff_command(program);
   add_compare_command(program);
   add_plan_command(program);
+  add_lab_command(program);
   add_trackers_command(program);
   refuse_empty_values(program);
   try {

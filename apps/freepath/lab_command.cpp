@@ -1,0 +1,254 @@
+// freepath lab: the trackers in one dimension, against exact curves.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/freepath/commands.h"
+#include "apps/freepath/method_list.h"
+#include "apps/freepath/parse.h"
+#include "apps/freepath/progress_bar.h"
+#include "freepath/base/error.h"
+#include "freepath/base/nearest_name.h"
+#include "freepath/evaluation/lab.h"
+#include "freepath/evaluation/lab_numbers.h"
+#include "freepath/evaluation/lab_report.h"
+#include "freepath/transport/auto_tracker.h"
+#include "freepath/transport/walker.h"
+
+namespace freepath::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFooter =
+    R"(Media that vary along one axis, whose free paths are known exactly: what trackers sample, their
+weights, what they cost, and how throughput evolves where channels differ. -o names a folder, which is
+made if it is missing; it gets report.html, lab.json, lab.csv and every plot as .svg. Only times depend
+on --threads. docs/lab.md explains the figures. Ctrl-C ends without writing anything.
+
+A tracker that walks all channels with one path is followed through its scatterings too. Methods take
+options after their name: spectral:collision-probability=max,rate-scale=2
+
+Examples:
+  freepath lab -o lab
+  freepath lab --list
+  freepath lab chromatic-ramp -o ramp --trackers spectral:collision-probability=max,spectral
+  freepath lab fixture-a two-boxes -o boxes --paths 1e7 --absorption analog)";
+
+/// The options as they were typed.
+struct Options {
+  std::vector<std::string> settings;
+  std::string folder, trackers, paths = "4e5", absorption = "weighted";
+  uint64_t seed = 0;
+  int threads = 0;
+  bool list = false;
+};
+
+void print_list() {
+  for (const LabSettingInfo& info : lab_setting_infos()) {
+    fmt::print("{:<16}  {}\n", info.name, info.summary);
+  }
+}
+
+void check_setting(const std::string& setting) {
+  std::vector<std::string_view> names;
+  for (const LabSettingInfo& info : lab_setting_infos()) names.push_back(info.name);
+  if (std::find(names.begin(), names.end(), setting) != names.end()) return;
+  const std::string_view nearest = nearest_name(setting, names);
+  if (!nearest.empty()) fail("there is no setting '{}'; did you mean '{}'?", setting, nearest);
+  fail("there is no setting '{}'; there are {}", setting, fmt::join(names, ", "));
+}
+
+std::vector<std::string> read_trackers(const std::string& text) {
+  if (text.empty()) return {};
+  return read_option("--trackers", [&] {
+    std::vector<std::string> trackers = split_methods(text);
+    for (const std::string& tracker : trackers) {
+      if (tracker != kAutoTracker) parse_method(tracker, tracker_infos());
+    }
+    return trackers;
+  });
+}
+
+uint64_t read_paths(const std::string& text) {
+  constexpr double kFewest = 1000;
+  constexpr double kMost = 1e12;
+  const std::vector<double> numbers = parse_numbers(text, "--paths");
+  if (numbers.size() != 1 || numbers[0] < kFewest || numbers[0] > kMost ||
+      numbers[0] != std::floor(numbers[0])) {
+    fail("--paths: '{}' is not a whole number from {} to {}", text, kFewest, kMost);
+  }
+  return static_cast<uint64_t>(numbers[0]);
+}
+
+LabOptions read_options(const Options& options) {
+  constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
+                                    Choice<Absorption>{"weighted", Absorption::kWeighted}};
+  LabOptions lab;
+  for (const std::string& setting : options.settings) {
+    check_setting(setting);
+    const auto found = std::find(lab.settings.begin(), lab.settings.end(), setting);
+    if (found != lab.settings.end()) fail("the setting '{}' is named twice", setting);
+    lab.settings.push_back(setting);
+  }
+  lab.trackers = read_trackers(options.trackers);
+  lab.paths = read_paths(options.paths);
+  lab.seed = options.seed;
+  lab.threads = options.threads;
+  lab.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
+  return lab;
+}
+
+/// Makes the folder, before the time is spent.
+void prepare_folder(const std::string& folder) {
+  if (folder.empty()) fail("-o is missing: name a folder for the report, or take --list");
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    fail("-o {}: exists and is not a folder", folder);
+  }
+  fs::create_directories(folder, error);
+  if (error) fail("-o {}: can't make the folder: {}", folder, error.message());
+  if (access(folder.c_str(), W_OK | X_OK) != 0) fail("-o {}: can't be written to", folder);
+}
+
+/// Writes a file aside and then renames it.
+void write_file(const fs::path& folder, const LabFile& file) {
+  const fs::path target = folder / file.name;
+  const fs::path aside = folder / fmt::format(".{}.{}.partial", file.name, getpid());
+  std::error_code error;
+  {
+    std::ofstream stream(aside, std::ios::binary);
+    stream << file.content;
+    if (!stream.flush()) {
+      fs::remove(aside, error);
+      fail("can't write {}", target.string());
+    }
+  }
+  fs::rename(aside, target, error);
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(aside, ignored);
+  fail("can't write {}: {}", target.string(), error.message());
+}
+
+/// How far the laboratory is, on a terminal alone.
+class ProgressLine {
+ public:
+  void show(double share, std::string_view doing) {
+    constexpr auto kBetween = std::chrono::milliseconds(100);
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ || now - shown_ < kBetween) return;
+    shown_ = now;
+    fmt::print(stderr, "\r{:3.0f} %  {}\x1b[K", 100 * share, doing);
+    std::fflush(stderr);
+  }
+  void finish() const {
+    if (terminal_) fmt::print(stderr, "\r\x1b[K");
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  std::chrono::steady_clock::time_point shown_;
+};
+
+/// The comparison of a kind that is farthest off, of those that count.
+const LabCheck* worst(const LabMeasurement& measurement, LabCheck LabChannel::*member) {
+  const LabCheck* found = nullptr;
+  for (const LabChannel& channel : measurement.channels) {
+    const LabCheck& check = channel.*member;
+    if (check.standing != LabStanding::kTested) continue;
+    if (found == nullptr || check.p < found->p) found = &check;
+  }
+  return found;
+}
+
+void print_row(const LabFindings& findings, const LabMeasurement& measurement, double level) {
+  std::string verdict(to_string(verdict_of(measurement, level)));
+  if (measurement.biased) verdict += " (biased)";
+  if (!measurement.refusal.empty()) {
+    fmt::print("{:<16} {:<48} {:>8} {:>9} {:>9} {:>10}  {}\n", findings.setting.name,
+               measurement.tracker, "-", "-", "-", "-", verdict);
+    return;
+  }
+  const LabCheck* const transmittance = worst(measurement, &LabChannel::transmittance);
+  const LabCheck* const free_path = worst(measurement, &LabChannel::free_path);
+  fmt::print("{:<16} {:<48} {:>8} {:>9} {:>9.3f} {:>10.4g}  {}\n", findings.setting.name,
+             measurement.tracker,
+             transmittance == nullptr ? "-" : fmt::format("{:+.2f}", transmittance->z),
+             free_path == nullptr ? "-" : fmt::format("{:.3g}", free_path->p), measurement.lookups,
+             measurement.variance, verdict);
+}
+
+void print_table(const LabResult& result) {
+  fmt::print("{:<16} {:<48} {:>8} {:>9} {:>9} {:>10}  {}\n", "setting", "tracker", "z of T",
+             "p of path", "look-ups", "variance", "verdict");
+  for (const LabFindings& findings : result.settings) {
+    for (const LabMeasurement& measurement : findings.trackers) {
+      print_row(findings, measurement, result.level);
+    }
+  }
+}
+
+void run(const Options& options) {
+  if (options.list) {
+    print_list();
+    return;
+  }
+  const LabOptions lab = read_options(options);
+  prepare_folder(options.folder);
+  const StopOnInterrupt stop;
+  ProgressLine line;
+  LabResult result;
+  try {
+    result = run_lab(lab, [&](double share, std::string_view doing) {
+      line.show(share, doing);
+      return !stop.requested();
+    });
+  } catch (const Error&) {
+    line.finish();
+    if (stop.requested()) fail("interrupted; nothing was written");
+    throw;
+  }
+  line.finish();
+  const std::vector<LabFile> files = lab_files(result);
+  for (const LabFile& file : files) write_file(options.folder, file);
+  print_table(result);
+  fmt::print("{} files in {}: open {}\n", files.size(), options.folder,
+             (fs::path(options.folder) / "report.html").string());
+}
+
+}  // namespace
+
+void add_lab_command(CLI::App& program) {
+  CLI::App* const command = program.add_subcommand(
+      "lab", "Trackers in one dimension, against exact free paths: an HTML report");
+  const auto options = std::make_shared<Options>();
+  Options& o = *options;
+  command->add_option("settings", o.settings, "Settings to measure [all]; --list names them")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("-o,--output", o.folder, "Folder for the report");
+  command->add_option("--trackers", o.trackers,
+                      "Trackers, NAME:OPTION=VALUE,... [all, and what the paper compares]");
+  command->add_option("--paths", o.paths, "Paths of each tracker")->capture_default_str();
+  command->add_option("--absorption", o.absorption, "analog or weighted")->capture_default_str();
+  command->add_option("--seed", o.seed, "Seed of the random numbers")
+      ->capture_default_str()
+      ->check(kWholeNumber);
+  command->add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
+  command->add_flag("--list", o.list, "List the settings");
+  command->footer(kFooter);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace freepath::program
