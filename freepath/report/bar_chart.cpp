@@ -70,7 +70,7 @@ BarLayout layout_of(const BarChart& chart) {
     names = std::max(names, text_width(bar.name, kLabelSize));
     values = std::max(values, text_width(value_text(bar), kTickSize));
   }
-  const double title_lines = static_cast<double>(layout.title.size());
+  const auto title_lines = static_cast<double>(layout.title.size());
   SvgBox& plot = layout.plot;
   plot.top = layout.title.empty() ? kMargin : 24 + 20 * title_lines;
   const auto rows = static_cast<double>(std::max<std::size_t>(1, chart.bars.size()));
