@@ -111,11 +111,13 @@ double place_in_rows(std::vector<LegendEntry>& entries, double left, double widt
   return row + kLegendRow;
 }
 
-void draw_legend(SvgWriter& svg, const std::vector<LegendEntry>& entries, double top) {
+void draw_legend(SvgWriter& svg, const std::vector<LegendEntry>& entries, double top,
+                 double right) {
   for (const LegendEntry& entry : entries) {
+    const double room = right - entry.x - kKeyWidth - kKeyGap;
     draw_legend_key(svg, entry.mark, entry.look, entry.x, top + entry.y);
     svg.text(entry.x + kKeyWidth + kKeyGap, top + entry.y + 4, TextAnchor::kStart, kTickSize,
-             escape_markup(entry.name));
+             escape_markup(shortened(entry.name, kTickSize, room)));
   }
 }
 
@@ -206,7 +208,7 @@ std::string to_svg(const Chart& chart) {
   svg.end_clip();
   draw_bottom_axis(svg, layout.x, chart.x.label, plot);
   draw_left_axis(svg, layout.y, chart.y.label, plot, kMargin + 10);
-  draw_legend(svg, layout.legend, layout.legend_top);
+  draw_legend(svg, layout.legend, layout.legend_top, chart.width - kMargin + 1);
   return std::move(svg).finished();
 }
 
