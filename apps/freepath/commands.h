@@ -11,6 +11,8 @@ void add_info_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_slab_command(CLI::App& program);
 void add_diff_command(CLI::App& program);
+void add_compare_command(CLI::App& program);
+void add_plan_command(CLI::App& program);
 void add_lab_command(CLI::App& program);
 void add_trackers_command(CLI::App& program);
 

@@ -8,13 +8,14 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
+#include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
 
 namespace freepath::program {
@@ -163,19 +164,10 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
                            const std::vector<std::string>& volumes) {
   namespace fs = std::filesystem;
   if (file.empty()) return;
-  std::error_code error;
-  const fs::path folder = fs::absolute(file, error).parent_path();
-  if (!fs::is_directory(folder, error)) {
-    fail("--stats {}: the folder {} does not exist; create it first", file, folder.string());
-  }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    fail("--stats {}: the folder {} can't be written to", file, folder.string());
-  }
-  if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
-    fail("--stats {}: exists and is not a file", file);
-  }
+  read_option("--stats", [&] { check_file_place(file); });
   std::vector<std::string> others = pictures;
   others.insert(others.end(), volumes.begin(), volumes.end());
+  std::error_code error;
   for (const std::string& other : others) {
     if (fs::weakly_canonical(other, error) == fs::weakly_canonical(file, error)) {
       fail("--stats {}: would overwrite {}; choose another name", file, other);
@@ -185,23 +177,7 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
 
 void write_statistics(const std::string& file, const RenderResult& result,
                       const RenderReport& report) {
-  const std::string aside = fmt::format("{}.{}.tmp", file, getpid());
-  {
-    std::ofstream stream(aside);
-    stream << statistics_json(result, report).dump(2) << '\n';
-    if (!stream.flush()) {
-      std::error_code ignored;
-      std::filesystem::remove(aside, ignored);
-      fail("can't write {}", file);
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(aside, file, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(aside, ignored);
-    fail("can't write {}: {}", file, error.message());
-  }
+  write_file(file, statistics_json(result, report).dump(2) + '\n');
 }
 
 void print_warnings(const RenderResult& result) {

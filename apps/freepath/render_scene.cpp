@@ -11,7 +11,6 @@
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 #include "freepath/render/paths/scene_renderer.h"
-#include "freepath/scene/build/scene_builder.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
@@ -21,7 +20,20 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// What the command line says, else the scene, else what is standard.
+std::vector<std::string> outputs_of(const ScenePlan& plan, const BuiltScene& built) {
+  std::vector<std::string> outputs = plan.outputs;
+  if (outputs.empty()) {
+    if (built.picture.file_name.empty()) {
+      fail("{}: neither its film nor -o names a picture to write", plan.file);
+    }
+    outputs.push_back(built.picture.file_name);
+  }
+  for (const std::string& output : outputs) check_writable(output);
+  return outputs;
+}
+
+}  // namespace
+
 RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
   RenderSettings settings = plan.settings;
   const PictureSettings& picture = built.picture;
@@ -43,20 +55,6 @@ RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
       plan.interpolation.value_or(picture.interpolation.value_or(walk.interpolation));
   return settings;
 }
-
-std::vector<std::string> outputs_of(const ScenePlan& plan, const BuiltScene& built) {
-  std::vector<std::string> outputs = plan.outputs;
-  if (outputs.empty()) {
-    if (built.picture.file_name.empty()) {
-      fail("{}: neither its film nor -o names a picture to write", plan.file);
-    }
-    outputs.push_back(built.picture.file_name);
-  }
-  for (const std::string& output : outputs) check_writable(output);
-  return outputs;
-}
-
-}  // namespace
 
 bool is_scene_file(const std::string& file) {
   return ends_with(file, ".pbrt") || ends_with(file, ".pbrt.gz");

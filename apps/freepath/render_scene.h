@@ -10,6 +10,7 @@
 #include "apps/freepath/parse.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/renderer.h"
+#include "freepath/scene/build/scene_builder.h"
 
 namespace freepath::program {
 
@@ -32,6 +33,11 @@ struct ScenePlan {
 
 /// Whether a file is a scene, by its name: *.pbrt or *.pbrt.gz.
 bool is_scene_file(const std::string& file);
+
+/// What the command line says of a rendering, else the scene, else what is standard: all but
+/// layers.
+/// @throws Error for methods that do not exist
+RenderSettings settle(const ScenePlan& plan, const BuiltScene& built);
 
 /// Renders and writes the picture of a scene; Ctrl-C while it is rendered ends it early.
 /// @throws Error as the parser, the builder, the renderer and the writers

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/report_folder.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 
@@ -42,6 +43,7 @@ void refuse_empty_values(CLI::App& program) {
 }  // namespace
 
 int run(int argc, const char* const* argv) {
+  set_command_line(argc, argv);
   CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
   program.set_version_flag("--version", version());
   program.require_subcommand(1);
@@ -53,6 +55,8 @@ int run(int argc, const char* const* argv) {
   add_generate_command(program);
   add_slab_command(program);
   add_diff_command(program);
+  add_compare_command(program);
+  add_plan_command(program);
   add_lab_command(program);
   add_trackers_command(program);
   refuse_empty_values(program);

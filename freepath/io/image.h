@@ -79,9 +79,13 @@ enum class ExrPrecision {
 void write_exr(const std::string& path, const Image& image,
                ExrPrecision precision = ExrPrecision::kFloat);
 
-/// Writes the colour to a PNG file: 8 bits, sRGB transfer function, clipped to [0, 1], in the same
-/// two steps as write_exr.
+/// The bytes of a PNG file of the colour: 8 bits, sRGB transfer function, clipped to [0, 1].
 /// @param exposure values are multiplied by 2^exposure first [stops]
+/// @param name what to call the image in a message
+/// @throws Error if it can't be encoded
+std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::string& name);
+
+/// Writes the colour to a PNG file: as encode_png, in the same two steps as write_exr.
 /// @throws Error that names the file
 void write_png(const std::string& path, const Image& image, double exposure = 0);
 

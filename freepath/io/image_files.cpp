@@ -6,18 +6,16 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <system_error>
 
+#include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
 
 namespace freepath {
@@ -69,56 +67,19 @@ void set_metadata(OIIO::ImageSpec& spec, const Image& image) {
   }
 }
 
-/// The file that a path stands for: a link is followed, so that renaming replaces its target.
-fs::path resolved(const std::string& path) {
-  std::error_code error;
-  const fs::path real = fs::weakly_canonical(path, error);
-  return error ? fs::path(path) : real;
-}
-
-/// A file beside the target, which replaces it when it is complete and else disappears.
-class AsideFile {
- public:
-  explicit AsideFile(const std::string& path) : path_(path), target_(resolved(path)) {
-    check_writable(path);
-    aside_ = target_.parent_path() /
-             fmt::format(".{}.{}.partial", target_.filename().string(), getpid());
-  }
-  AsideFile(const AsideFile&) = delete;
-  AsideFile& operator=(const AsideFile&) = delete;
-  ~AsideFile() {
-    std::error_code ignored;
-    fs::remove(aside_, ignored);
-  }
-
-  std::string name() const { return aside_.string(); }
-
-  [[noreturn]] void give_up(const std::string& reason) const {
-    fail("{}: can't write the image: {}", path_, trimmed(reason));
-  }
-
-  void replace_target() const {
-    std::error_code error;
-    fs::rename(aside_, target_, error);
-    if (error) give_up(error.message());
-  }
-
- private:
-  std::string path_;
-  fs::path target_, aside_;
-};
-
-/// Writes with OpenImageIO: into the file aside, or into a buffer if there is one.
-void encode(const AsideFile& file, const char* format, const OIIO::ImageSpec& spec,
-            const OIIO::TypeDesc& type, const void* pixels,
-            OIIO::Filesystem::IOProxy* buffer = nullptr) {
+/// Writes with OpenImageIO: into the file of that name, or into a buffer if there is one.
+/// @return the reason why it could not; empty: it is written
+std::string encode(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
+                   const OIIO::TypeDesc& type, const void* pixels,
+                   OIIO::Filesystem::IOProxy* buffer = nullptr) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-  if (!output) file.give_up(OIIO::geterror());
-  if (buffer != nullptr && !output->set_ioproxy(buffer)) file.give_up(output->geterror());
-  if (!output->open(file.name(), spec)) file.give_up(output->geterror());
+  if (!output) return trimmed(OIIO::geterror());
+  if (buffer != nullptr && !output->set_ioproxy(buffer)) return trimmed(output->geterror());
+  if (!output->open(name, spec)) return trimmed(output->geterror());
   const bool written = output->write_image(type, pixels);
   const std::string reason = output->geterror();
-  if (!output->close() || !written) file.give_up(written ? output->geterror() : reason);
+  if (output->close() && written) return {};
+  return trimmed(written ? output->geterror() : reason);
 }
 
 void check_consistent(const std::string& path, const Image& image) {
@@ -183,24 +144,7 @@ ImageFormat image_format(const std::string& path) {
 
 void check_writable(const std::string& path) {
   image_format(path);
-  const fs::path target = resolved(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) {
-    fail("{}: the folder {} does not exist; create it first", path, folder.string());
-  }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    fail("{}: the folder {} can't be written to", path, folder.string());
-  }
-  const fs::file_status status = fs::status(target, error);
-  if (!fs::exists(status)) return;
-  if (!fs::is_regular_file(status)) fail("{}: exists and is not a file", path);
-  // Renaming would replace a read-only file, and root may write to any: its mode is what counts.
-  constexpr fs::perms kAnyWrite =
-      fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
-  if ((status.permissions() & kAnyWrite) == fs::perms::none || access(target.c_str(), W_OK) != 0) {
-    fail("{}: the file exists and is read-only; remove it or choose another name", path);
-  }
+  check_file_place(path);
 }
 
 void write_exr(const std::string& path, const Image& image, ExrPrecision precision) {
@@ -216,23 +160,23 @@ void write_exr(const std::string& path, const Image& image, ExrPrecision precisi
   if (image.full_height > 0) spec.full_height = image.full_height;
   spec.attribute("compression", "zip");
   set_metadata(spec, image);
-  const AsideFile file(path);
+  std::vector<float> clamped;
   if (half) {
     constexpr float kLargestHalf = 65504;
-    std::vector<float> values = image.values;
-    for (float& value : values) value = std::clamp(value, -kLargestHalf, kLargestHalf);
-    encode(file, "openexr", spec, OIIO::TypeFloat, values.data());
-  } else {
-    encode(file, "openexr", spec, OIIO::TypeFloat, image.values.data());
+    clamped = image.values;
+    for (float& value : clamped) value = std::clamp(value, -kLargestHalf, kLargestHalf);
   }
+  const AsideFile file(path);
+  const std::string reason = encode(file.name(), "openexr", spec, OIIO::TypeFloat,
+                                    half ? clamped.data() : image.values.data());
+  if (!reason.empty()) file.give_up(reason);
   file.replace_target();
 }
 
-void write_png(const std::string& path, const Image& image, double exposure) {
-  check_consistent(path, image);
-  if (image_format(path) != ImageFormat::kPng) fail("{}: a PNG file must end in .png", path);
-  if (!std::isfinite(exposure)) fail("{}: the exposure must be a finite number of stops", path);
-  const std::array<int, 3> colour = colour_channels(image, path);
+std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::string& name) {
+  check_consistent(name, image);
+  if (!std::isfinite(exposure)) fail("{}: the exposure must be a finite number of stops", name);
+  const std::array<int, 3> colour = colour_channels(image, name);
   const auto scale = static_cast<float>(std::exp2(exposure));
   std::vector<uint8_t> bytes;
   bytes.reserve(image.pixel_count() * 3);
@@ -246,17 +190,19 @@ void write_png(const std::string& path, const Image& image, double exposure) {
   }
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  // The PNG writer doesn't notice a full disk, hence the detour.
-  const AsideFile file(path);
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput buffer(encoded);
-  encode(file, "png", spec, OIIO::TypeUInt8, bytes.data(), &buffer);
-  std::ofstream stream(file.name(), std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(encoded.data()),
-               static_cast<std::streamsize>(encoded.size()));
-  stream.close();
-  if (!stream) file.give_up(std::generic_category().message(errno));
-  file.replace_target();
+  const std::string reason =
+      encode("picture.png", "png", spec, OIIO::TypeUInt8, bytes.data(), &buffer);
+  if (!reason.empty()) fail("{}: can't encode the picture: {}", name, reason);
+  return encoded;
+}
+
+void write_png(const std::string& path, const Image& image, double exposure) {
+  if (image_format(path) != ImageFormat::kPng) fail("{}: a PNG file must end in .png", path);
+  // The PNG writer doesn't notice a full disk, hence the detour.
+  const std::vector<uint8_t> bytes = encode_png(image, exposure, path);
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace freepath

@@ -51,7 +51,7 @@ class PassRenderer {
         threads_(settings.threads),
         wavefronts_(std::move(make_wavefront)),
         start_(Clock::now()),
-        deadline_(settings.time_limit) {}
+        deadline_(settings.whole_passes ? 0 : settings.time_limit) {}
 
   void run() {
     const bool timed = settings_.time_limit > 0;
@@ -112,7 +112,7 @@ class PassRenderer {
     const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
     Wavefront& wavefront = wavefronts_.local();
     const auto pass_is_over = [&] { return is_over(samples); };
-    const bool hasty = settings_.time_limit > 0 && samples_done_ == 0;
+    const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
     std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
     while (!over_) {
       const std::size_t wanted = std::max<std::size_t>(paths / samples, fewest_pixels_);

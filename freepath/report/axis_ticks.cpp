@@ -155,7 +155,9 @@ AxisScale::AxisScale(double minimum, double maximum, bool logarithmic)
 double AxisScale::position(double value) const {
   if (!logarithmic_) return (value - minimum_) / (maximum_ - minimum_);
   if (!(value > 0)) return std::nan("");
-  return std::log(value / minimum_) / std::log(maximum_ / minimum_);
+  // A difference of logarithms: the ratio of large and small numbers may be too large for one.
+  const double begin = std::log(minimum_);
+  return (std::log(value) - begin) / (std::log(maximum_) - begin);
 }
 
 double nice_step(double length, double wanted) {

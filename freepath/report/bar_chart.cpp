@@ -11,8 +11,7 @@ namespace freepath {
 namespace {
 
 constexpr double kMargin = 16;
-constexpr double kRow = 32;        // height of a bar and the gap to the next
-constexpr double kThickness = 18;  // of a bar
+constexpr double kRow = 32;  // height of a bar and the gap to the next, if nothing else is given
 constexpr double kNameGap = 10;
 constexpr double kValueGap = 8;
 constexpr int kValueDigits = 3;
@@ -42,8 +41,13 @@ struct BarLayout {
   std::vector<std::string> title;
   SvgBox plot;
   PlotAxis axis;
+  double row = kRow;
   double base = 0;  ///< x at which bars begin.
   double height = 0;
+
+  double thickness() const { return std::min(0.56 * row, 28.0); }
+  /// The height in the drawing of a bar's middle.
+  double middle(std::size_t bar) const { return plot.top + (static_cast<double>(bar) + 0.5) * row; }
 };
 
 /// The right end of a bar with its error bar, where its value is written.
@@ -69,7 +73,11 @@ BarLayout layout_of(const BarChart& chart) {
   const double title_lines = static_cast<double>(layout.title.size());
   SvgBox& plot = layout.plot;
   plot.top = layout.title.empty() ? kMargin : 24 + 20 * title_lines;
-  plot.bottom = plot.top + kRow * static_cast<double>(std::max<std::size_t>(1, chart.bars.size()));
+  const auto rows = static_cast<double>(std::max<std::size_t>(1, chart.bars.size()));
+  if (chart.height > 0) {
+    layout.row = std::max(12.0, (chart.height - plot.top - kBottomAxisHeight - 4) / rows);
+  }
+  plot.bottom = plot.top + layout.row * rows;
   plot.left = kMargin + std::min(names, 0.45 * chart.width) + kNameGap;
   // Beyond the longest bar there is room for its value.
   plot.right = chart.width - kMargin - values - kValueGap;
@@ -88,8 +96,8 @@ void draw_bar(SvgWriter& svg, const ChartBar& bar, const BarLayout& layout, doub
   if (!std::isfinite(end)) return;
   svg.begin_ink(bar.is_best ? "best" : "bar");
   svg.add(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="currentColor"/>)",
-          coordinate(std::min(layout.base, end)), coordinate(middle - kThickness / 2),
-          coordinate(std::abs(end - layout.base)), coordinate(kThickness));
+          coordinate(std::min(layout.base, end)), coordinate(middle - layout.thickness() / 2),
+          coordinate(std::abs(end - layout.base)), coordinate(layout.thickness()));
   svg.end_group();
   if (!bar.low || !bar.high) return;
   const double high = layout.axis.place(*bar.high);
@@ -120,7 +128,7 @@ std::string to_svg(const BarChart& chart) {
   draw_vertical_grid(svg, layout.axis, plot);
   svg.begin_clip(plot);
   for (std::size_t i = 0; i < chart.bars.size(); ++i) {
-    draw_bar(svg, chart.bars[i], layout, plot.top + (static_cast<double>(i) + 0.5) * kRow);
+    draw_bar(svg, chart.bars[i], layout, layout.middle(i));
   }
   if (chart.mark_at) {
     const double x = layout.axis.place(*chart.mark_at);
@@ -130,7 +138,7 @@ std::string to_svg(const BarChart& chart) {
   draw_bottom_axis(svg, layout.axis, chart.axis.label, plot);
   for (std::size_t i = 0; i < chart.bars.size(); ++i) {
     const ChartBar& bar = chart.bars[i];
-    const double baseline = plot.top + (static_cast<double>(i) + 0.5) * kRow + 4.5;
+    const double baseline = layout.middle(i) + 4.5;
     const std::string_view weight = bar.is_best ? R"(font-weight="600")" : "";
     svg.text(plot.left - kNameGap, baseline, TextAnchor::kEnd, kLabelSize, escape_markup(bar.name),
              weight);

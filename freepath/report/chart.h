@@ -40,7 +40,7 @@ struct Chart {
   std::string title;
   ChartAxis x, y;
   std::vector<ChartSeries> series;
-  int width = 720, height = 450;  ///< Of the drawing, whose letters have a height of 12 to 16.
+  int width = 640, height = 420;  ///< Of the drawing, whose letters have a height of 12 to 16.
 };
 
 /// One bar.
@@ -57,7 +57,8 @@ struct BarChart {
   ChartAxis axis;  ///< Where it is logarithmic, bars begin at its left end.
   std::vector<ChartBar> bars;
   std::optional<double> mark_at = {};  ///< A line across all bars, such as 1 for "the same".
-  int width = 720;                     ///< Of the drawing; its height follows from the bars.
+  int width = 640;                     ///< Of the drawing.
+  int height = 0;                      ///< 0: what its bars need.
 };
 
 /// A whole SVG file, which needs no other: its colours are its own, and follow the viewer's choice

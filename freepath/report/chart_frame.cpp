@@ -58,6 +58,9 @@ void draw_grid_lines(SvgWriter& svg, const PlotAxis& axis, const SvgBox& plot, b
 
 void ValueRange::add(double value) {
   if (!std::isfinite(value) || (logarithmic_ && value <= 0)) return;
+  // Lengths and ends of axes must be finite numbers too.
+  constexpr double kLargest = 1e290;
+  value = std::clamp(value, logarithmic_ ? 1 / kLargest : -kLargest, kLargest);
   minimum_ = is_empty_ ? value : std::min(minimum_, value);
   maximum_ = is_empty_ ? value : std::max(maximum_, value);
   is_empty_ = false;
@@ -76,13 +79,13 @@ AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room
   maximum = axis.maximum.value_or(maximum);
   widen(axis, minimum, maximum);
   if (room == AxisRoom::kLittle && axis.logarithmic) {
-    const double factor = std::pow(maximum / minimum, 0.04);
+    const double factor = std::exp(0.04 * (std::log(maximum) - std::log(minimum)));
     if (!axis.minimum) minimum /= factor;
     if (!axis.maximum) maximum *= factor;
   } else if (room == AxisRoom::kLittle) {
     // A plot of things that are never negative begins at 0 if that is near.
     if (minimum > 0 && minimum < 0.4 * maximum && !axis.minimum) minimum = 0;
-    const double step = nice_step(maximum - minimum, 8);
+    const double step = nice_step(maximum - minimum, 8) / 4;
     if (!axis.minimum) minimum = std::floor(minimum / step + 1e-9) * step;
     if (!axis.maximum) maximum = std::ceil(maximum / step - 1e-9) * step;
   }
@@ -92,7 +95,7 @@ AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room
 double PlotAxis::place(double value) const {
   constexpr double kReach = 20;  // lengths of the axis
   const double position = scale.position(value);
-  if (std::isnan(position)) return position;
+  if (std::isnan(position) || !std::isfinite(value)) return std::nan("");
   return from + (to - from) * std::clamp(position, -kReach, kReach);
 }
 

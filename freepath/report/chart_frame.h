@@ -34,7 +34,7 @@ class ValueRange {
 /// How far an axis reaches beyond the values on its own accord.
 enum class AxisRoom {
   kNone,   ///< Not at all.
-  kLittle  ///< To the next tick, or a few percent where it is logarithmic.
+  kLittle  ///< A few percent, to a round value where it is linear.
 };
 
 /// The scale of an axis: its given ends, and for others the values.
@@ -48,7 +48,7 @@ struct PlotAxis {
   double from = 0, to = 0;  ///< Where its minimum and maximum are.
   std::vector<AxisTick> ticks = {};
 
-  /// NaN where the value has no place. Kept within reach of the plot, so that lines to values far
+  /// NaN where the value has no place, or is not finite. Kept within reach of the plot, so that lines to values far
   /// outside remain drawable.
   double place(double value) const;
 };

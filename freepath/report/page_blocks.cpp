@@ -107,7 +107,7 @@ std::string tools_html(const PagePictures& block) {
 <div><label>Left <select class="choose-left">{0}</select></label>
 <button type="button" class="button swap" title="Swap left and right" aria-label="Swap left and right">&#8646;</button>
 <label>Right <select class="choose-right">{0}</select></label></div>
-<div><span class="scale-shown"></span>
+<div><span class="where"></span><span class="scale-shown"></span>
 <button type="button" class="button zoom-out" title="Zoom out" aria-label="Zoom out">&minus;</button>
 <button type="button" class="button zoom-in" title="Zoom in" aria-label="Zoom in">+</button>
 <button type="button" class="button zoom-reset">Whole picture</button></div>
@@ -138,7 +138,17 @@ std::string stage_html(const PagePictures& block) {
       "<input type=\"range\" class=\"seam js-only\" min=\"0\" max=\"100\" step=\"0.1\" "
       "value=\"50\" aria-label=\"Seam between the pictures\" style=\"width:{}\">\n",
       width);
-  return html + "<p class=\"where js-only\"></p>\n";
+  return html;
+}
+
+/// Three to five columns, so that the last row is as full as can be.
+std::size_t columns_for(std::size_t count) {
+  std::size_t best = 4;
+  const auto missing = [&](std::size_t columns) { return (columns - count % columns) % columns; };
+  for (const std::size_t columns : {std::size_t{3}, std::size_t{5}}) {
+    if (missing(columns) < missing(best)) best = columns;
+  }
+  return best;
 }
 
 }  // namespace
@@ -166,11 +176,10 @@ std::string block_html(const PageCode& block) {
 }
 
 std::string block_html(const PageTable& block) {
-  constexpr std::size_t kMany = 9;
   std::string html = "<figure class=\"card table-card\">\n";
   html += fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">\n",
                       escape_markup(block.caption.empty() ? "Table" : block.caption));
-  html += block.columns.size() > kMany ? "<table class=\"many-columns\">\n" : "<table>\n";
+  html += fmt::format("<table style=\"--columns:{}\">\n", block.columns.size());
   html += "<thead><tr>";
   for (const PageColumn& column : block.columns) html += head_html(column);
   html += "</tr></thead>\n<tbody>\n";
@@ -189,16 +198,18 @@ std::string block_html(const PageTable& block) {
 }
 
 std::string block_html(const PageFigure& block) {
-  // Letters may grow a little with the page, not more.
-  constexpr double kLargestScale = 1.35;
+  // Letters may grow and shrink a little with the page, not more.
+  constexpr double kLargestScale = 1.25;
+  constexpr double kSmallestScale = 0.7;
   const std::string_view svg = svg_element(block.svg);
   const double width = svg_width(svg);
-  std::string html =
-      fmt::format("<figure class=\"card{}\">\n<div class=\"drawing\"{}>\n{}</div>\n",
-                  block.is_wide ? " wide" : "",
-                  width > 0 ? fmt::format(" style=\"--widest:{:.0f}px\"", kLargestScale * width)
-                            : std::string{},
-                  svg);
+  std::string sizes;
+  if (width > 0) {
+    sizes = fmt::format(" style=\"--widest:{:.0f}px;--least:{:.0f}px\"", kLargestScale * width,
+                        kSmallestScale * width);
+  }
+  std::string html = fmt::format("<figure class=\"card{}\">\n<div class=\"drawing\"{}>\n{}</div>\n",
+                                 block.is_wide ? " wide" : "", sizes, svg);
   html += "<div class=\"under\">" + caption_html(block.caption, "figcaption");
   html += fmt::format("<a class=\"button save\" download=\"{}\" href=\"{}\">Save SVG</a></div>\n",
                       escape_markup(block.file_name), svg_url(block.svg));
@@ -225,7 +236,9 @@ std::string block_html(const PagePictures& block) {
 
 std::string block_html(const PageMaps& block) {
   if (block.maps.empty()) return {};
-  std::string html = "<figure class=\"card maps\">\n<div class=\"grid\">\n";
+  std::string html =
+      fmt::format("<figure class=\"card maps\">\n<div class=\"grid\" style=\"--columns:{}\">\n",
+                  columns_for(block.maps.size()));
   for (const PagePictures::Picture& map : block.maps) {
     const std::string name = escape_markup(map.name);
     html += fmt::format(

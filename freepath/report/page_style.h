@@ -34,7 +34,7 @@ html:not(.js) .js-only{display:none!important}
 .bar{position:sticky;top:0;z-index:20;background:var(--page);border-bottom:1px solid var(--line)}
 .bar-inner{max-width:1232px;margin:0 auto;padding:0 1rem;display:flex;align-items:center;
   gap:1rem;min-height:3.25rem}
-.contents{flex:1;min-width:0;overflow-x:auto;scrollbar-width:none;white-space:nowrap}
+.contents{flex:1;margin-left:-.7rem;min-width:0;overflow-x:auto;scrollbar-width:none;white-space:nowrap}
 .contents::-webkit-scrollbar{display:none}
 .contents ol{display:flex;gap:.25rem;list-style:none;margin:0;padding:.25rem 0}
 .contents a{display:block;padding:.3rem .7rem;border-radius:999px;color:var(--soft);
@@ -58,16 +58,16 @@ h2{font-size:1.375rem;line-height:1.25;letter-spacing:-.012em;font-weight:650;
 h2 a{color:inherit;text-decoration:none}
 h2 a:hover::after{content:" #";color:var(--soft);font-weight:400}
 .prose{max-width:75ch;margin:0 0 1.25rem}
-.caption{margin:.85rem 0 0;color:var(--soft);font-size:.875rem;line-height:1.5;max-width:85ch}
+.caption{margin:.85rem 0 0;color:var(--soft);font-size:.875rem;line-height:1.5;max-width:100ch}
 figure{margin:0}
 .card{background:var(--card);border:1px solid var(--line);border-radius:12px;
   padding:1.1rem 1.25rem;margin:0 0 1.25rem;box-shadow:var(--shadow);min-width:0}
 
 /* Programs. */
-.code{position:relative;background:var(--code);padding:0;box-shadow:none}
-.code pre{margin:0;padding:1rem 5.5rem 1rem 1.25rem;overflow-x:auto;
+.code{display:flex;align-items:flex-start;background:var(--code);padding:0;box-shadow:none}
+.code pre{flex:1;min-width:0;margin:0;padding:1rem 1.25rem;overflow-x:auto;
   font:.8438rem/1.65 ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace}
-.code .button{position:absolute;top:.6rem;right:.6rem}
+.code .button{margin:.6rem .6rem 0 0}
 
 /* Tables. */
 .table-card{padding:0;overflow:hidden}
@@ -101,12 +101,19 @@ tbody td.best,tbody tr:hover td.best{background:var(--tint)}
 .bad{color:var(--bad);font-weight:550}
 .faint{color:var(--soft);font-weight:400}
 
+/* Where there is more to the side, that side has a shadow. */
+.scroll,.drawing{--shade:rgb(0 0 0/.16);background:
+  linear-gradient(90deg,var(--card) 40%,transparent) 0 0/3rem 100% local no-repeat,
+  linear-gradient(270deg,var(--card) 40%,transparent) 100% 0/3rem 100% local no-repeat,
+  linear-gradient(90deg,var(--shade),transparent) 0 0/.8rem 100% scroll no-repeat,
+  linear-gradient(270deg,var(--shade),transparent) 100% 0/.8rem 100% scroll no-repeat}
+
 /* Charts. */
 .figures{display:grid;grid-template-columns:repeat(2,minmax(0,1fr));gap:1.25rem;margin:0 0 1.25rem}
 .figures .card{margin:0;display:flex;flex-direction:column;padding:.6rem .6rem .8rem}
 .figures .wide,.figures .card:only-child{grid-column:1/-1}
 .drawing{overflow-x:auto}
-.drawing>svg{display:block;width:100%;max-width:var(--widest);height:auto;margin:0 auto}
+.drawing>svg{display:block;width:100%;min-width:var(--least);max-width:var(--widest);height:auto;margin:0 auto}
 .drawing .fpc-paper{display:none}
 .fpc{--fpc-paper:var(--card)!important}
 .under{display:flex;gap:1rem;align-items:flex-start;justify-content:space-between;
@@ -122,9 +129,9 @@ tbody td.best,tbody tr:hover td.best{background:var(--tint)}
 .tools select{max-width:15rem;padding:.3rem .5rem;border:1px solid var(--line);border-radius:8px;
   background:var(--card);color:var(--ink)}
 .tools .button{min-width:2.1rem}
-.scale-shown{font-size:.8125rem;color:var(--soft);min-width:3.6em;text-align:right;
+.where,.scale-shown{font-size:.8125rem;color:var(--soft);min-width:3.6em;text-align:right;
   font-variant-numeric:tabular-nums}
-.stage{position:relative;overflow:hidden;margin:0 auto;border-radius:6px;background:#000;
+.stage{position:relative;overflow:hidden;margin:0 auto;border-radius:6px;
   cursor:ew-resize;touch-action:pan-y;user-select:none;-webkit-user-select:none}
 .stage.zoomed-in{cursor:grab;touch-action:none}
 .stage.moving{cursor:grabbing}
@@ -146,12 +153,10 @@ tbody td.best,tbody tr:hover td.best{background:var(--tint)}
   height:2rem;margin:-1rem 0 0 -1rem;border-radius:50%;background:#fff;color:#1d2126;
   font:700 .95rem/1.75rem system-ui,sans-serif;text-align:center;box-shadow:0 1px 5px rgb(0 0 0/.45)}
 .seam{display:block;width:100%;margin:.75rem auto 0;accent-color:var(--accent)}
-.where{margin:.35rem 0 0;color:var(--soft);font-size:.8125rem;min-height:1.3em;
-  font-variant-numeric:tabular-nums;text-align:center}
 .grid{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(15rem,100%),1fr));gap:1rem}
 .grid figcaption{font-size:.8125rem;color:var(--soft);margin-top:.3rem;overflow-wrap:anywhere}
 .grid img{display:block;width:100%;height:auto;border-radius:4px;background:#000}
-.maps .grid{grid-template-columns:repeat(auto-fill,minmax(min(13rem,100%),1fr))}
+.maps .grid{grid-template-columns:repeat(var(--columns),minmax(0,1fr))}
 .maps .grid img,.enlarged img{image-rendering:pixelated}
 .enlarge{all:unset;display:block;width:100%;cursor:zoom-in}
 .enlarge:focus-visible{outline:2px solid var(--accent);outline-offset:2px}
@@ -169,14 +174,16 @@ html:not(.js) .enlarge{cursor:auto}
 .enlarged p{margin:.6rem 0 0;text-align:center;font-size:.9375rem}
 
 @media screen{.js .picture-grid{display:none}}
-@media (max-width:860px){.figures{grid-template-columns:minmax(0,1fr)}}
+@media (max-width:1000px){
+  .figures{grid-template-columns:minmax(0,1fr)}
+  .maps .grid{grid-template-columns:repeat(auto-fill,minmax(min(10rem,100%),1fr))}
+}
 @media (max-width:600px){
   main{padding-top:2rem}
   .card{padding:.85rem}
   .table-card{padding:0}
   .code{padding:0}
   .figures .card{padding:.4rem .4rem .7rem}
-  .drawing>svg{min-width:34rem}
   .tools label{flex:1 1 9rem}
   .tools select{flex:1;min-width:0}
   .tools>div{flex:1 1 100%}
@@ -187,7 +194,7 @@ html:not(.js) .enlarge{cursor:auto}
 /// On paper: no controls, all pictures, nothing scrolls or is cut in two.
 inline constexpr std::string_view kPagePrintStyle = R"css(
 @page{size:A4;margin:13mm}
-.bar,.tools,.stage,.seam,.where,.button,.enlarged{display:none!important}
+.bar,.tools,.stage,.seam,.button,.enlarged{display:none!important}
 body{font-size:10pt;line-height:1.45}
 main{max-width:none;padding:0}
 .opening{margin-bottom:6mm}
@@ -200,12 +207,13 @@ h2{font-size:14pt;margin:8mm 0 3mm;break-after:avoid}
 .code pre{padding:3mm;white-space:pre-wrap;overflow-wrap:anywhere;font-size:8.5pt}
 .figures{gap:4mm;margin-bottom:4mm}
 .figures .card{break-inside:avoid}
+.drawing>svg{min-width:0;max-height:84mm}
 .table-card{padding:0;border:0;overflow:visible;break-inside:auto}
 .table-card .caption{padding:0}
-.scroll{overflow:visible;max-height:none}
-table{font-size:8.5pt}
-.many-columns{font-size:6.4pt}
-th,td,thead th{white-space:normal;padding:1mm 1.2mm;position:static!important}
+.scroll,.drawing{overflow:visible;max-height:none;background:none}
+table{font-size:min(8.5pt,84pt/var(--columns))}
+th,td,thead th{white-space:normal;padding:1mm;position:static!important}
+td.number{white-space:nowrap}
 th:first-child,td:first-child{padding-left:0}
 th:last-child,td:last-child{padding-right:0}
 thead{display:table-header-group}

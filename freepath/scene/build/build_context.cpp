@@ -81,7 +81,7 @@ SpectralDistribution distribution_of(BuildContext& context, const SpectrumValue&
   return std::visit(ToDistribution{context, meaning, list.location_of(name), name}, value);
 }
 
-fs::path file_of(const BuildContext& context, const ParameterList& list, std::string_view name) {
+fs::path file_of(BuildContext& context, const ParameterList& list, std::string_view name) {
   const std::string text = list.get_string(name, "");
   const SourceLocation& location = list.location_of(name);
   if (!list.type_of(name)) fail_at(location, "'{}' is missing: the file to read", name);
@@ -91,7 +91,9 @@ fs::path file_of(const BuildContext& context, const ParameterList& list, std::st
   if (text.empty()) fail_at(location, "'{}' names no file", name);
   std::error_code ignored;
   for (const fs::path& candidate : candidates) {
-    if (fs::exists(candidate, ignored)) return candidate;
+    if (!fs::exists(candidate, ignored)) continue;
+    context.files.push_back(candidate);
+    return candidate;
   }
   fail_at(location, "there is no file {} (looked for '{}')", in_quotes(text),
           candidates[0].string());

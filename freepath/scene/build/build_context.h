@@ -32,6 +32,8 @@ struct BuildContext {
   std::map<std::string, SpectrumTextureId, std::less<>> unbounded_textures = {};
   /// Of each of PbrtScene::materials its place in PathScene::materials; nothing for an `interface`.
   std::vector<std::optional<uint32_t>> materials = {};
+  /// Files that statements name (file_of).
+  std::vector<std::filesystem::path> files = {};
 };
 
 /// Which spectrum a parameter's colour stands for.
@@ -50,9 +52,9 @@ SpectralDistribution distribution_of(BuildContext& context, const SpectrumValue&
                                      std::string_view name);
 
 /// The file that a parameter of type string names: as it stands, beside the file that the parameter
-/// stands in, or beside the main file, whichever exists.
+/// stands in, or beside the main file, whichever exists. It is kept in BuildContext::files.
 /// @throws Error with file:line:column if there is none
-std::filesystem::path file_of(const BuildContext& context, const ParameterList& list,
+std::filesystem::path file_of(BuildContext& context, const ParameterList& list,
                               std::string_view name);
 
 /// Calls a function and puts file:line:column before the message of an Error that it throws.

@@ -44,7 +44,7 @@ Mesh read_mesh(const ParameterList& list, int corners) {
   return mesh;
 }
 
-std::vector<ShapeGeometry> read_geometry(const BuildContext& context, const PbrtShape& shape) {
+std::vector<ShapeGeometry> read_geometry(BuildContext& context, const PbrtShape& shape) {
   const ParameterList& list = shape.parameters;
   if (shape.type == "sphere") {
     const double radius = list.get_float("radius", 1);

@@ -56,6 +56,21 @@ Vec3d origin_of(const PathScene& scene, const Box3d& extent) {
   return (box.isEmpty() ? extent : box).center();
 }
 
+/// Remembers what was read.
+class RecordingReader final : public FileReader {
+ public:
+  bool exists(const std::filesystem::path& path) const override { return disk_.exists(path); }
+  std::string read(const std::filesystem::path& path, std::size_t limit) const override {
+    files_.push_back(path);
+    return disk_.read(path, limit);
+  }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  DiskFileReader disk_;
+  mutable std::vector<std::filesystem::path> files_;
+};
+
 }  // namespace
 
 BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
@@ -87,12 +102,16 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   lights.origin = scene.origin;
   scene.lights.emplace(std::move(lights), *scene.spectra);
   simplify_regions(std::move(shapes.surfaces), scene);
+  built.files = std::move(context.files);
   return built;
 }
 
 BuiltScene load_scene(const std::filesystem::path& file, Diagnostics& diagnostics,
                       const BuildOptions& options) {
-  return build_scene(parse_pbrt_file(file, diagnostics), diagnostics, options);
+  const RecordingReader reader;
+  BuiltScene built = build_scene(parse_pbrt_file(file, diagnostics, reader), diagnostics, options);
+  built.files.insert(built.files.begin(), reader.files().begin(), reader.files().end());
+  return built;
 }
 
 }  // namespace freepath

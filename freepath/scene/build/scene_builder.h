@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/scene/build/build_camera.h"
@@ -15,6 +16,8 @@ namespace freepath {
 struct BuiltScene {
   PathScene scene;
   PictureSettings picture;
+  /// All that were read: the scene's text, what it includes, and what its statements name.
+  std::vector<std::filesystem::path> files = {};
 };
 
 /// What may be said about a scene from outside of its file.

@@ -1,0 +1,289 @@
+// freepath compare: estimators measured against each other.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "apps/freepath/commands.h"
+#include "apps/freepath/method_list.h"
+#include "apps/freepath/parse.h"
+#include "apps/freepath/picture_options.h"
+#include "apps/freepath/progress_bar.h"
+#include "apps/freepath/report_folder.h"
+#include "apps/freepath/subjects.h"
+#include "freepath/base/error.h"
+#include "freepath/evaluation/comparison_charts.h"
+#include "freepath/evaluation/comparison_figures.h"
+#include "freepath/evaluation/comparison_report.h"
+#include "freepath/transport/auto_tracker.h"
+
+namespace freepath::program {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Renders a volume or a scene with every method given, in rounds, so that what slows the machine
+down meets all alike, and reports errors against a reference, their efficiency 1/(MSE · CPU time)
+relative to delta, the work they do, and whether they are biased. All combinations of --trackers,
+--transmittance and --interpolation are run.
+
+The folder of -o gets report.html, compare.json, compare.csv, the figures as .svg, the reference and
+the pictures as .exr. The reference is made once, for --reference-time, and found again while
+volumes, camera, lights and medium stay the same.
+
+Exit status: 0; with --check, 1 if a method fails the bias test that does not say it is biased.
+
+Examples:
+  freepath compare cloud.vdb -o report
+  freepath compare cloud.vdb -o report --trackers delta,decomposition,ray-marching:step=4 --time 10
+  freepath compare haze.vdb -o report --sigma-s 1,2,4 --trackers delta,spectral,hero-wavelength
+  freepath compare cloud.vdb -o report --trackers delta --transmittance delta,ratio,residual-ratio
+  freepath compare scene.pbrt -o report --spp 64 --repeats 8 --reference reference.exr)";
+
+struct Options {
+  PictureOptions picture;
+  std::string folder;
+  std::string trackers =
+      "delta,weighted-delta,decomposition,weighted-decomposition,"
+      "spectral-decomposition";
+  std::string transmittance = "ratio", interpolation = "stochastic";
+  double time = ComparisonSettings{}.time;
+  uint32_t samples = 0;
+  int repeats = ComparisonSettings{}.repeats;
+  ReferencePlan reference{.file = {}, .cache = standard_reference_cache()};
+  uint32_t reference_samples = 0;
+  double exposure = 0;
+  bool check = false;
+};
+
+std::string now_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%d %H:%M UTC", &utc);
+  return text;
+}
+
+/// All combinations of the methods and interpolations.
+/// @param automatic what `auto` stands for
+std::vector<Configuration> read_configurations(const Options& options,
+                                               const std::string& automatic) {
+  std::vector<Configuration> configurations;
+  const auto list_of = [](std::string_view option, const std::string& text) {
+    return read_option(option, [&] { return split_methods(text); });
+  };
+  const auto transmittances = list_of("--transmittance", options.transmittance);
+  const auto interpolations = list_of("--interpolation", options.interpolation);
+  for (const std::string& tracker : list_of("--trackers", options.trackers)) {
+    for (const std::string& transmittance : transmittances) {
+      for (const std::string& interpolation : interpolations) {
+        Configuration configuration;
+        configuration.tracker = read_tracker(tracker, "--trackers");
+        if (configuration.tracker == kAutoTracker) configuration.tracker = automatic;
+        configuration.transmittance =
+            read_method(transmittance, "--transmittance", transmittance_infos());
+        configuration.interpolation = read_interpolation(interpolation);
+        if (std::find(configurations.begin(), configurations.end(), configuration) !=
+            configurations.end()) {
+          fail("--trackers: {} is given twice{}", configuration.tracker,
+               tracker == kAutoTracker ? " (auto stands for it here)" : "");
+        }
+        configurations.push_back(std::move(configuration));
+      }
+    }
+  }
+  return configurations;
+}
+
+/// A line of a name, a bar and the time left, on a terminal.
+class ComparisonBar {
+ public:
+  ComparisonBar() : terminal_(isatty(STDERR_FILENO) != 0) {}
+  void show(const ComparisonProgress& progress) {
+    constexpr double kSecondsBetween = 0.1;
+    if (!terminal_ || progress.seconds < next_) return;
+    next_ = progress.seconds + kSecondsBetween;
+    const double left =
+        progress.fraction > 0 ? progress.seconds * (1 - progress.fraction) / progress.fraction : 0;
+    fmt::print(stderr, "\r{:3.0f} %  {} left  {}\x1b[K", 100 * progress.fraction, clock_text(left),
+               progress.step);
+    std::fflush(stderr);
+  }
+  void finish() const {
+    if (terminal_) fmt::print(stderr, "\r\x1b[K");
+  }
+
+ private:
+  bool terminal_;
+  double next_ = 0;
+};
+
+void print_table(const Comparison& comparison) {
+  constexpr const char* kRow = "{:<34}{:>11}{:>18}{:>11}{:>9}{:>9}{:>10}{:>10}  {}\n";
+  fmt::print(kRow, "method", "efficiency", "95 % of it", "MSE", "FLIP", "wall [s]", "look-ups",
+             "worst |z|", "bias test");
+  for (const ConfigurationResult& result : comparison.configurations) {
+    const auto figure = [&](std::string_view key) {
+      for (const ComparisonFigure& candidate : comparison_figures()) {
+        if (candidate.key == key) return number_text(result.over_runs(candidate.of_run).value, 3);
+      }
+      return std::string("-");
+    };
+    const auto& efficiency = result.efficiency;
+    std::string range = "-";
+    if (efficiency && efficiency->low) {
+      range = number_text(*efficiency->low, 3) + " to " + number_text(*efficiency->high, 3);
+    }
+    fmt::print(kRow, result.name, efficiency ? number_text(efficiency->value, 3) : "-", range,
+               figure("mse"), figure("flip"), figure("seconds"), figure("lookups_per_path"),
+               number_text(result.bias.worst(), 3), result.passes_bias_test ? "passes" : "BIASED");
+  }
+  for (const std::string& finding : findings_of(comparison)) fmt::print("{}\n", finding);
+}
+
+/// File names have neither colons nor blanks.
+std::string file_name_of(const std::string& method) {
+  std::string name;
+  for (const char c : method) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-';
+    if (plain) {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  return name;
+}
+
+void write_report(const Comparison& comparison, const ReportContext& context,
+                  const ReportFolder& folder) {
+  for (std::size_t i = 0; i < comparison.references.size(); ++i) {
+    write_exr(folder.file(i == 0 ? "reference.exr" : "reference_2.exr"),
+              to_image(comparison.references[i].estimates));
+  }
+  for (const ConfigurationResult& result : comparison.configurations) {
+    write_exr(folder.file(file_name_of(result.name) + ".exr"), to_image(result.together));
+  }
+  for (const NamedFigure& figure : figures_of(comparison)) {
+    folder.write(figure.file_name, figure.svg);
+  }
+  folder.write("compare.json", json_of(comparison, context));
+  folder.write("compare.csv", csv_of(comparison));
+  folder.write("report.html", to_html(page_of(comparison, context)));
+}
+
+ComparisonSettings read_settings(const CLI::App& command, const Options& options,
+                                 const LoadedSubject& loaded) {
+  ComparisonSettings settings;
+  settings.configurations = read_configurations(options, loaded.automatic_tracker);
+  settings.time = command.count("--spp") > 0 && command.count("--time") == 0 ? 0 : options.time;
+  settings.may_interpolate = command.count("--interpolation") == 0;
+  settings.samples = options.samples;
+  settings.repeats = options.repeats;
+  settings.seed = options.picture.seed;
+  settings.render = loaded.settings;
+  settings.reference = options.reference;
+  settings.reference.samples = options.reference_samples;
+  const bool by_samples =
+      command.count("--reference-spp") > 0 && command.count("--reference-time") == 0;
+  if (by_samples) settings.reference.time = 0;
+  return settings;
+}
+
+void run(const CLI::App& command, const Options& options) {
+  // What is wrong with the names of methods is said before anything is loaded.
+  read_configurations(options, "delta");
+  const ReportFolder folder(options.folder);
+  const LoadedSubject loaded = load_subject(command, options.picture);
+  const ComparisonSettings settings = read_settings(command, options, loaded);
+  const StopOnInterrupt stop;
+  ComparisonBar bar;
+  const Comparison comparison =
+      compare(loaded.subject, settings, [&](const ComparisonProgress& progress) {
+        bar.show(progress);
+        return !stop.requested();
+      });
+  bar.finish();
+  const ReportContext context{.subject = loaded.subject.name,
+                              .command = command_line(),
+                              .machine = machine_text(settings.render),
+                              .date = now_text(),
+                              .exposure = options.exposure};
+  write_report(comparison, context, folder);
+  print_table(comparison);
+  fmt::print("wrote {}\n", folder.file("report.html"));
+  if (!options.check) return;
+  for (const ConfigurationResult& result : comparison.configurations) {
+    if (!result.is_biased && !result.passes_bias_test) throw CLI::RuntimeError(1);
+  }
+}
+
+void add_comparison_options(CLI::App& command, Options& o) {
+  command.add_option("-o,--output", o.folder, "Folder for the report, made if it is missing")
+      ->required();
+  command
+      .add_option("--trackers", o.trackers,
+                  "Trackers, separated by commas: " + method_names(tracker_infos()) + ", auto")
+      ->capture_default_str();
+  command
+      .add_option("--transmittance", o.transmittance,
+                  "Transmittance of shadow rays, the same: " + method_names(transmittance_infos()))
+      ->capture_default_str();
+  command
+      .add_option("--interpolation", o.interpolation,
+                  "nearest, trilinear, stochastic, separated by commas; where nothing is said, "
+                  "trackers that refuse stochastic interpolation take trilinear")
+      ->capture_default_str();
+  command.add_option("--time", o.time, "Seconds of each method, shared evenly by its repeats")
+      ->capture_default_str()
+      ->check(kFiniteNumber & CLI::PositiveNumber);
+  command
+      .add_option("--spp", o.samples,
+                  "Samples per pixel of each method in place of a time, shared evenly by its "
+                  "repeats; with --time, whichever ends first")
+      ->check(CLI::Range(1U, 1U << 30));
+  command.add_option("--repeats", o.repeats, "Independent runs of each method")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--reference", o.reference.file,
+                     "Picture to measure against; without it one is made");
+  command.add_option("--reference-time", o.reference.time, "Seconds for one that is made")
+      ->capture_default_str()
+      ->check(kFiniteNumber & CLI::PositiveNumber);
+  command
+      .add_option("--reference-spp", o.reference_samples,
+                  "Its samples per pixel, in place of a time")
+      ->check(CLI::Range(2U, 1U << 30));
+  command.add_option("--cache", o.reference.cache, "Folder where references are kept, or none")
+      ->capture_default_str();
+  command.add_option("--exposure", o.exposure, "Exposure of the report's pictures [stops]")
+      ->capture_default_str()
+      ->check(kFiniteNumber);
+  command.add_flag("--check", o.check,
+                   "Exit with 1 if a method fails the bias test that claims to be unbiased");
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& program) {
+  CLI::App* const command =
+      program.add_subcommand("compare", "Measure trackers and estimators against each other");
+  command->footer(kFooter);
+  const auto options = std::make_shared<Options>();
+  options->picture.size = "320x180";
+  add_comparison_options(*command, *options);
+  add_picture_options(*command, options->picture);
+  command->callback([command, options] {
+    if (options->reference.cache == "none") options->reference.cache.clear();
+    run(*command, *options);
+  });
+}
+
+}  // namespace freepath::program

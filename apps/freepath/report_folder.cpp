@@ -1,0 +1,55 @@
+#include "apps/freepath/report_folder.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "freepath/base/error.h"
+#include "freepath/io/aside_file.h"
+
+namespace freepath::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string& remembered_command() {
+  static std::string command;
+  return command;
+}
+
+}  // namespace
+
+ReportFolder::ReportFolder(const std::string& path) : path_(path) {
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_directory(path, error)) {
+    fail("-o {}: exists and is not a folder; name a folder for the report", path);
+  }
+  fs::create_directories(path, error);
+  if (error) fail("-o {}: can't make the folder: {}", path, error.message());
+  if (access(path.c_str(), W_OK | X_OK) != 0) fail("-o {}: the folder can't be written to", path);
+}
+
+std::string ReportFolder::file(const std::string& name) const {
+  return (fs::path(path_) / name).string();
+}
+
+void ReportFolder::write(const std::string& name, std::string_view contents) const {
+  write_file(file(name), contents);
+}
+
+std::string command_line() { return remembered_command(); }
+
+void set_command_line(int argc, const char* const* argv) {
+  std::string command = "freepath";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    const bool plain = !argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos;
+    command += plain ? " " + argument : " '" + argument + "'";
+  }
+  remembered_command() = command;
+}
+
+}  // namespace freepath::program

@@ -1,0 +1,150 @@
+#include "apps/freepath/subjects.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "apps/freepath/parse.h"
+#include "apps/freepath/render_scene.h"
+#include "freepath/io/content_digest.h"
+#include "freepath/render/paths/scene_renderer.h"
+#include "freepath/transport/auto_tracker.h"
+
+namespace freepath::program {
+namespace {
+
+/// "smoke.vdb, fire.vdb"
+std::string names_of(const std::vector<std::string>& files) {
+  std::string names;
+  for (const std::string& file : files) {
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  return names;
+}
+
+/// Every option that a picture depends on, as it was typed.
+std::string digest_of(const CLI::App& command, const std::vector<std::filesystem::path>& files) {
+  constexpr const char* kWithoutEffect[] = {"--threads", "--batch",         "--simd",
+                                            "--seed",    "--interpolation", "--super-voxel"};
+  constexpr const char* kOfPictures[] = {"Medium", "Light", "Picture", "Method"};
+  ContentDigest digest;
+  for (const CLI::Option* const option : command.get_options()) {
+    const std::string name = option->get_name();
+    const bool counts =
+        std::any_of(std::begin(kOfPictures), std::end(kOfPictures),
+                    [&](const char* group) { return option->get_group().rfind(group, 0) == 0; });
+    const bool idle = std::find(std::begin(kWithoutEffect), std::end(kWithoutEffect), name) !=
+                      std::end(kWithoutEffect);
+    if (!counts || idle || option->count() == 0) continue;
+    digest.add(name);
+    for (const std::string& value : option->results()) digest.add(value);
+  }
+  for (const std::filesystem::path& file : files) digest.add_file(file.string());
+  return digest.hex();
+}
+
+LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions& options,
+                                  const PictureSize& size) {
+  check_volume_options(command, options);
+  // All that can be wrong with the options is said before a file is read.
+  read_up(options);
+  read_camera(options, FilmPlan());
+  const LightOptions lights = read_lights(options);
+  std::vector<VolumeReport> report;
+  auto medium = std::make_shared<const Medium>(
+      make_medium(load_volumes(read_volumes(options), report), options.super_voxel));
+  LoadedSubject loaded = subject_of_medium(options, std::move(medium), size);
+  std::vector<std::filesystem::path> files(options.volumes.files.begin(),
+                                           options.volumes.files.end());
+  if (const auto* image = std::get_if<std::string>(&lights.environment)) {
+    files.emplace_back(*image);
+  }
+  loaded.subject.digest = digest_of(command, files);
+  return loaded;
+}
+
+LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& options,
+                                 const std::optional<PictureSize>& size) {
+  check_scene_options(command, options);
+  ScenePlan plan;
+  plan.file = options.volumes.files[0];
+  plan.settings = read_run_settings(options);
+  plan.color = read_color(options);
+  if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
+  BuildOptions build;
+  if (size) {
+    build.size = FilmSize{size->width, size->height};
+  } else if (command.count("--size") > 0) {
+    const PictureSize wanted = parse_size(options.size, "--size");
+    build.size = FilmSize{wanted.width, wanted.height};
+  }
+  Diagnostics diagnostics;
+  const auto built = std::make_shared<BuiltScene>(load_scene(plan.file, diagnostics, build));
+  for (const std::string& warning : diagnostics.warnings()) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  LoadedSubject loaded;
+  loaded.settings = settle(plan, *built);
+  const SceneCamera& camera = *built->scene.camera;
+  const PixelWindow window = pixel_window(loaded.settings.crop, camera.width(), camera.height());
+  check_memory(window, FilmPlan());
+  loaded.automatic_tracker = standard_tracker(built->scene);
+  loaded.reason = loaded.automatic_tracker == "spectral"
+                      ? "media have colour, and surfaces take most of the time"
+                      : "media are grey, or there are no surfaces, whose time one path for all "
+                        "channels would save";
+  Subject& subject = loaded.subject;
+  subject.name = names_of(options.volumes.files);
+  subject.digest = digest_of(command, built->files);
+  subject.width = window.width;
+  subject.height = window.height;
+  subject.render = [built, color = plan.color](const RenderSettings& settings,
+                                               const ProgressFunction& progress) {
+    return render_scene(built->scene, color, settings, progress);
+  };
+  subject.render_reference = [built, color = plan.color](const RenderSettings& settings,
+                                                         const ProgressFunction& progress) {
+    const SampleKind samples = std::exchange(built->scene.samples, SampleKind::kIndependent);
+    RenderResult result = render_scene(built->scene, color, settings, progress);
+    built->scene.samples = samples;
+    return result;
+  };
+  return loaded;
+}
+
+}  // namespace
+
+LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<const Medium> medium,
+                                const PictureSize& size) {
+  const UpAxis up = read_up(options);
+  CameraOptions camera_options = read_camera(options, FilmPlan());
+  camera_options.width = size.width;
+  camera_options.height = size.height;
+  const auto camera = std::make_shared<const Camera>(make_camera(*medium, camera_options, up));
+  const auto lights = std::make_shared<const Lights>(make_lights(read_lights(options), up));
+  LoadedSubject loaded;
+  loaded.settings = read_run_settings(options);
+  const TrackerChoice choice = choose_tracker(*medium);
+  loaded.automatic_tracker = choice.tracker;
+  loaded.reason = choice.reason;
+  Subject& subject = loaded.subject;
+  subject.name = names_of(options.volumes.files);
+  subject.width = camera->width();
+  subject.height = camera->height();
+  subject.render = [medium, camera, lights](const RenderSettings& settings,
+                                            const ProgressFunction& progress) {
+    return render(*medium, *camera, *lights, settings, progress);
+  };
+  loaded.medium = std::move(medium);
+  return loaded;
+}
+
+LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options,
+                           const std::optional<PictureSize>& size) {
+  if (is_scene(options)) return load_scene_subject(command, options, size);
+  return load_volume_subject(command, options, size ? *size : parse_size(options.size, "--size"));
+}
+
+}  // namespace freepath::program

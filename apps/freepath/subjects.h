@@ -1,0 +1,38 @@
+#pragma once
+/// @file Volumes and scenes that methods are compared on.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/freepath/parse.h"
+#include "apps/freepath/picture_options.h"
+#include "freepath/evaluation/subject.h"
+#include "freepath/media/medium.h"
+
+namespace freepath::program {
+
+/// A subject, and what there is to know of it.
+struct LoadedSubject {
+  Subject subject;
+  RenderSettings settings;  ///< All but samples, time and methods.
+  /// Of bare volumes: their medium, for methods to be chosen by.
+  std::shared_ptr<const Medium> medium;
+  std::string automatic_tracker;  ///< What `auto` stands for here,
+  std::string reason;             ///< and why, in one line.
+};
+
+/// Loads volumes or a scene as the options say, and prints its warnings on standard error.
+/// @param size in place of that of the options or of the scene
+/// @throws Error as the loaders and builders, naming the option or file
+LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options,
+                           const std::optional<PictureSize>& size = {});
+
+/// The same of volumes, with another medium and in another size. It has no digest.
+LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<const Medium> medium,
+                                const PictureSize& size);
+
+}  // namespace freepath::program

@@ -1,0 +1,80 @@
+#include "freepath/evaluation/errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freepath {
+namespace {
+
+constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite
+
+/// Sums of differences and of their variances.
+struct Sums {
+  double difference = 0;
+  double variance = 0;
+
+  double z() const { return difference == 0 ? 0 : difference / std::sqrt(variance); }
+};
+
+}  // namespace
+
+SquaredError squared_error(const std::vector<float>& means, const PixelEstimates& reference) {
+  SquaredError error;
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    const double expected = reference.mean[i];
+    const double difference = means[i] - expected;
+    const double square = difference * difference - reference.variance[i];
+    error.channel_mse[i % 3] += square;
+    error.relative_mse += square / (expected * expected + kRelativeFloor);
+  }
+  const auto pixels = static_cast<double>(reference.pixel_count());
+  for (double& mse : error.channel_mse) {
+    mse /= pixels;
+    error.mse += mse / 3;
+  }
+  error.relative_mse /= 3 * pixels;
+  return error;
+}
+
+double BiasTest::worst_block() const {
+  double worst = 0;
+  for (const float value : block_z) worst = std::max(worst, std::abs(double{value}));
+  return worst;
+}
+
+double BiasTest::worst() const {
+  double worst = worst_block();
+  for (const double value : z) worst = std::max(worst, std::abs(value));
+  return worst;
+}
+
+BiasTest test_bias(const PixelEstimates& estimates, const PixelEstimates& reference) {
+  BiasTest test;
+  test.blocks_across = (reference.width + BiasTest::kBlock - 1) / BiasTest::kBlock;
+  test.blocks_down = (reference.height + BiasTest::kBlock - 1) / BiasTest::kBlock;
+  std::array<Sums, 3> whole;
+  std::vector<Sums> blocks(std::size_t{3} * test.blocks_across * test.blocks_down);
+  for (std::size_t pixel = 0; pixel < reference.pixel_count(); ++pixel) {
+    if (estimates.samples[pixel] == 0 || reference.samples[pixel] == 0) continue;
+    const std::size_t column = pixel % reference.width / BiasTest::kBlock;
+    const std::size_t row = pixel / reference.width / BiasTest::kBlock;
+    const std::size_t block = row * test.blocks_across + column;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const std::size_t i = 3 * pixel + channel;
+      const double difference = double{estimates.mean[i]} - reference.mean[i];
+      // Means are rounded to floats, which is all that differs where nothing varies.
+      const double rounding = 0x1p-24 * std::hypot(estimates.mean[i], reference.mean[i]);
+      const double variance =
+          double{estimates.variance[i]} + reference.variance[i] + rounding * rounding;
+      for (Sums* sums : {&whole[channel], &blocks[3 * block + channel]}) {
+        sums->difference += difference;
+        sums->variance += variance;
+      }
+    }
+  }
+  for (std::size_t channel = 0; channel < 3; ++channel) test.z[channel] = whole[channel].z();
+  for (const Sums& sums : blocks) test.block_z.push_back(static_cast<float>(sums.z()));
+  return test;
+}
+
+}  // namespace freepath
