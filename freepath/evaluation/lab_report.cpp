@@ -238,11 +238,15 @@ Page first_page(const LabResult& result) {
 
 }  // namespace
 
-std::vector<LabFile> lab_files(const LabResult& result) {
+std::vector<LabFile> lab_files(const LabResult& result, const std::string& command) {
   std::vector<LabFile> plots;
   Page page = first_page(result);
   for (const LabFindings& findings : result.settings) {
     add_setting(findings, result.level, page, plots);
+  }
+  if (!command.empty()) {
+    page.blocks.emplace_back(PageHeading{"Again"});
+    page.blocks.emplace_back(PageCode{command});
   }
   std::vector<LabFile> files = {
       {"report.html", to_html(page)}, {"lab.json", lab_json(result)}, {"lab.csv", lab_csv(result)}};

@@ -92,7 +92,7 @@ TEST(LabSettings, RampIsGaussian) {
 TEST(LabSettings, FixtureAHasItsRadiance) {
   const LabCurves curves(make_lab_setting("fixture-a"));
   for (int channel = 0; channel < 3; ++channel) {
-    EXPECT_NEAR(curves.radiance(channel), kFixtureRadiance[channel], 1e-6);
+    EXPECT_NEAR(curves.radiance(channel), kFixtureRadiance[channel], 5e-6);
     EXPECT_NEAR(curves.depth(1, channel), kFixtureThickness[channel], 5e-5);
   }
 }

@@ -107,6 +107,8 @@ TEST(LabStatistics, MeansOfRareAndHeavyContributionsDoNotCount) {
   LabMoments broken;
   for (int i = 0; i < 1000; ++i) broken.add(std::nan(""));
   EXPECT_EQ(check_mean(broken, 1000, 1).p, 0);
+  EXPECT_EQ(check_mean(broken, 1000, 1).standing, LabStanding::kTested);
+  EXPECT_EQ(check_distribution(std::vector{broken, heavy}, std::vector{0.5, 0.5}, 1000).p, 0);
 }
 
 }  // namespace
