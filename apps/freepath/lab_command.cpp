@@ -8,8 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +16,7 @@
 #include "apps/freepath/method_list.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
+#include "apps/freepath/report_folder.h"
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/evaluation/lab.h"
@@ -28,8 +27,6 @@
 
 namespace freepath::program {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kFooter =
     R"(Media that vary along one axis, whose free paths are known exactly: what trackers sample, their
@@ -110,38 +107,6 @@ LabOptions read_options(const Options& options) {
   return lab;
 }
 
-/// Makes the folder, before the time is spent.
-void prepare_folder(const std::string& folder) {
-  if (folder.empty()) fail("-o is missing: name a folder for the report, or take --list");
-  std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
-    fail("-o {}: exists and is not a folder", folder);
-  }
-  fs::create_directories(folder, error);
-  if (error) fail("-o {}: can't make the folder: {}", folder, error.message());
-  if (access(folder.c_str(), W_OK | X_OK) != 0) fail("-o {}: can't be written to", folder);
-}
-
-/// Writes a file aside and then renames it.
-void write_file(const fs::path& folder, const LabFile& file) {
-  const fs::path target = folder / file.name;
-  const fs::path aside = folder / fmt::format(".{}.{}.partial", file.name, getpid());
-  std::error_code error;
-  {
-    std::ofstream stream(aside, std::ios::binary);
-    stream << file.content;
-    if (!stream.flush()) {
-      fs::remove(aside, error);
-      fail("can't write {}", target.string());
-    }
-  }
-  fs::rename(aside, target, error);
-  if (!error) return;
-  std::error_code ignored;
-  fs::remove(aside, ignored);
-  fail("can't write {}: {}", target.string(), error.message());
-}
-
 /// How far the laboratory is, on a terminal alone.
 class ProgressLine {
  public:
@@ -206,7 +171,8 @@ void run(const Options& options) {
     return;
   }
   const LabOptions lab = read_options(options);
-  prepare_folder(options.folder);
+  if (options.folder.empty()) fail("-o is missing: name a folder for the report, or take --list");
+  const ReportFolder folder(options.folder);  // before the time is spent
   const StopOnInterrupt stop;
   ProgressLine line;
   LabResult result;
@@ -221,11 +187,10 @@ void run(const Options& options) {
     throw;
   }
   line.finish();
-  const std::vector<LabFile> files = lab_files(result);
-  for (const LabFile& file : files) write_file(options.folder, file);
+  const std::vector<LabFile> files = lab_files(result, command_line());
+  for (const LabFile& file : files) folder.write(file.name, file.content);
   print_table(result);
-  fmt::print("{} files in {}: open {}\n", files.size(), options.folder,
-             (fs::path(options.folder) / "report.html").string());
+  fmt::print("{} files in {}: open {}\n", files.size(), options.folder, folder.file("report.html"));
 }
 
 }  // namespace

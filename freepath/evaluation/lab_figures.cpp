@@ -43,11 +43,18 @@ ChartSeries scattered_series(const LabChannel& channel, std::string name) {
   return series;
 }
 
-/// Measurements that there are, a few at a time.
+/// Measurements worth drawing, a few at a time: where there are many, those whose weights exceed 1
+/// or which are biased, next to the first one, which stands for the others.
 std::vector<std::vector<const LabMeasurement*>> groups_of(const LabFindings& findings) {
+  constexpr float kRounding = 1.001F;
   std::vector<const LabMeasurement*> present;
   for (const LabMeasurement& measurement : findings.trackers) {
     if (measurement.refusal.empty()) present.push_back(&measurement);
+  }
+  if (present.size() > kMostSeries) {
+    std::erase_if(present, [first = present[0]](const LabMeasurement* each) {
+      return each != first && !each->biased && each->statistics.largest_weight <= kRounding;
+    });
   }
   const std::size_t count = (present.size() + kMostSeries - 1) / kMostSeries;
   std::vector<std::vector<const LabMeasurement*>> groups(count);
@@ -92,9 +99,11 @@ std::vector<LabFigure> grey_free_paths(const LabFindings& findings) {
     }
     sampled.series.push_back(exact_series(collision_density(findings.curves, 0), "exact µt T"));
     weighted.series.push_back(exact_series(groups[i][0]->channels[0].exact, "exact µs T"));
-    figures.push_back({numbered("sampled", i, groups.size()), std::move(sampled),
-                       "Counts of flights that end in a real collision. A tracker may sample "
-                       "another density than the exact one: its weights make up for it."});
+    figures.push_back(
+        {numbered("sampled", i, groups.size()), std::move(sampled),
+         "Counts of flights that end in a real collision. A tracker may sample "
+         "another density than the exact one: its weights make up for it. Trackers that "
+         "are not drawn sample as the first one does."});
     figures.push_back({numbered("free-paths", i, groups.size()), std::move(weighted),
                        "The same flights, each counted with its weight: the scattering that the "
                        "transfer equation asks for, in bands of 95 %."});
@@ -106,7 +115,7 @@ std::vector<LabFigure> grey_free_paths(const LabFindings& findings) {
 LabFigure chromatic_free_paths(const LabFindings& findings, const LabMeasurement& measurement) {
   LabFigure figure;
   figure.name = "free-paths-" + lab_slug(measurement.tracker);
-  figure.chart.title = lab_label(measurement.tracker);
+  figure.chart.title = "Free paths: " + lab_label(measurement.tracker);
   figure.chart.x = along_ray();
   figure.chart.y = {.label = "density × weight [1/m]", .minimum = 0};
   for (const int channel : kLabDrawingOrder) {
@@ -123,10 +132,12 @@ LabFigure chromatic_free_paths(const LabFindings& findings, const LabMeasurement
     figure.chart.series.push_back(
         exact_series(measurement.channels[channel].exact, channel == 0 ? "exact µs T" : ""));
   }
-  figure.caption = measurement.shared
-                       ? "One density is sampled for all channels; times the weights of each it is "
-                         "the exact one of each."
-                       : "Each channel takes paths of its own.";
+  figure.caption =
+      measurement.shared
+          ? "One density is sampled for all channels; times the weights of each it is "
+            "the exact one of each."
+          : "Each channel takes paths of its own. Trackers that are not drawn look like the "
+            "first one.";
   return figure;
 }
 
@@ -187,9 +198,10 @@ LabFigure extinction_figure(const LabFindings& findings) {
 std::vector<LabFigure> free_path_figures(const LabFindings& findings) {
   if (findings.setting.channels == 1) return grey_free_paths(findings);
   std::vector<LabFigure> figures;
-  for (const LabMeasurement& measurement : findings.trackers) {
-    if (!measurement.refusal.empty()) continue;
-    figures.push_back(chromatic_free_paths(findings, measurement));
+  for (const auto& group : groups_of(findings)) {
+    for (const LabMeasurement* measurement : group) {
+      figures.push_back(chromatic_free_paths(findings, *measurement));
+    }
   }
   return figures;
 }

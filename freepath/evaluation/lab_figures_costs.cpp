@@ -12,8 +12,9 @@ namespace freepath {
 namespace {
 
 /// One tracker's stages: bands from 5 to 95 % of the living paths, and their mean.
-Chart evolution_chart(const LabThroughput& throughput, const ChartAxis& x) {
-  Chart chart{.title = lab_label(throughput.tracker),
+Chart evolution_chart(const LabThroughput& throughput, const std::string& what,
+                      const ChartAxis& x) {
+  Chart chart{.title = what + lab_label(throughput.tracker),
               .x = x,
               .y = {.label = "|weight|", .logarithmic = true, .minimum = 1e-4, .maximum = 1e2},
               .series = {}};
@@ -37,7 +38,7 @@ Chart evolution_chart(const LabThroughput& throughput, const ChartAxis& x) {
       series.x.push_back(stage.at);
       series.y.push_back(stage.channels[channel].exact / stage.alive);
     }
-    chart.series.push_back(std::move(series));
+    if (std::isfinite(series.y.back())) chart.series.push_back(std::move(series));
   }
   return chart;
 }
@@ -112,13 +113,14 @@ std::vector<LabFigure> throughput_figures(const LabFindings& findings) {
                      "Of the paths that have met nothing but null collisions so far."});
   for (const LabThroughput& throughput : findings.scatterings) {
     figures.push_back(
-        {"scatterings-" + lab_slug(throughput.tracker), evolution_chart(throughput, n),
+        {"scatterings-" + lab_slug(throughput.tracker),
+         evolution_chart(throughput, "After each scattering: ", n),
          "Weights after each scattering: their mean, in bands from 5 to 95 % of the paths. Where "
          "the mean lies above the band, few paths carry it all."});
   }
   for (const LabThroughput& throughput : findings.along_ray) {
     figures.push_back(
-        {"ray-" + lab_slug(throughput.tracker), evolution_chart(throughput, x),
+        {"ray-" + lab_slug(throughput.tracker), evolution_chart(throughput, "Along the ray: ", x),
          "Weights of the paths that still fly at x: their mean, in bands from 5 to 95 %. Times "
          "the share of these paths, the mean is the transmittance."});
   }

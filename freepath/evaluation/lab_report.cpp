@@ -17,6 +17,9 @@ namespace {
 
 using Tone = PageCell::Tone;
 
+/// Standard errors beyond which nobody counts them: p underflows.
+constexpr double kFarOff = 40;
+
 PageCell text_cell(std::string text, Tone tone = Tone::kPlain) {
   return {.text = std::move(text), .tone = tone};
 }
@@ -44,7 +47,7 @@ PageCell verdict_cell(const LabMeasurement& measurement, double level) {
   } else {
     cell.tone = measurement.biased ? Tone::kPlain : Tone::kGood;
   }
-  if (measurement.biased) cell.note = "biased by its own account";
+  if (measurement.biased) cell.note = "biased";
   return cell;
 }
 
@@ -60,7 +63,7 @@ PageCell check_cell(const LabMeasurement& measurement, LabCheck LabChannel::*mem
   }
   if (worst == nullptr) {
     const LabCheck& check = measurement.channels[0].*member;
-    return text_cell(std::string(to_string(check.standing)), Tone::kFaint);
+    return text_cell(check.standing == LabStanding::kRare ? "rare" : "heavy", Tone::kFaint);
   }
   PageCell cell = number_cell(as_p ? worst->p : worst->z, as_p ? 2 : 3);
   if (!as_p) cell.text = fmt::format("{:+.2f}", worst->z);
@@ -79,12 +82,10 @@ const std::vector<PageColumn>& tracker_columns() {
       {"p of free paths", "Chance of a distribution of scatterings at least as far off"},
       {"z of radiance", "Standard errors from the exact value; the channel farthest off"},
       {"look-ups", "Component densities read by a path, in all channels together"},
-      {"null", "Null collisions of a path"},
       {"control", "Collisions of a path that the control decides"},
       {"largest weight", "Largest |weight| after a collision"},
-      {"negative", "Share of the flights that end with a negative weight"},
       {"variance", "Of the radiance of a path, mean over channels"},
-      {"look-ups × variance", "Cost of a given error: less is better"},
+      {"cost", "Look-ups × variance: what a given error costs; less is better"},
       {"ns", "Nanoseconds a path on one thread; differs from run to run"}};
   return kColumns;
 }
@@ -97,18 +98,12 @@ std::vector<PageCell> tracker_row(const LabMeasurement& measurement, double leve
     row.resize(tracker_columns().size(), text_cell("–", Tone::kFaint));
     return row;
   }
-  double negative = 0;
-  for (const LabChannel& channel : measurement.channels) {
-    negative = std::max(negative, channel.negative);
-  }
   row.push_back(check_cell(measurement, &LabChannel::transmittance, false));
   row.push_back(check_cell(measurement, &LabChannel::free_path, true));
   row.push_back(check_cell(measurement, &LabChannel::radiance, false));
   row.push_back(number_cell(measurement.lookups));
-  row.push_back(number_cell(measurement.null_collisions));
   row.push_back(number_cell(measurement.control_collisions));
   row.push_back(number_cell(measurement.statistics.largest_weight));
-  row.push_back(number_cell(negative));
   row.push_back(number_cell(measurement.variance));
   row.push_back(number_cell(measurement.lookups * measurement.variance));
   row.push_back(number_cell(1e9 * measurement.seconds));
@@ -121,9 +116,11 @@ PageTable tracker_table(const LabFindings& findings, double level) {
   for (const LabMeasurement& measurement : findings.trackers) {
     table.rows.push_back(tracker_row(measurement, level));
   }
+  table.caption =
+      "Rare, heavy: the events are too rare, or their weights spread too widely, to be tested.";
   if (findings.setting.channels > 1) {
-    table.caption =
-        "Trackers that give each channel a path of its own count the look-ups of all channels.";
+    table.caption +=
+        " Trackers that give each channel a path of its own count the look-ups of all channels.";
   }
   return table;
 }
@@ -137,10 +134,12 @@ PageTable overview(const LabResult& result) {
   std::vector<std::string> trackers;
   for (const LabFindings& findings : result.settings) {
     table.columns.push_back({findings.setting.name, findings.setting.summary});
+    // In the order of the settings' own lists, merged.
+    auto place = trackers.begin();
     for (const LabMeasurement& measurement : findings.trackers) {
-      if (std::find(trackers.begin(), trackers.end(), measurement.tracker) == trackers.end()) {
-        trackers.push_back(measurement.tracker);
-      }
+      auto found = std::find(trackers.begin(), trackers.end(), measurement.tracker);
+      if (found == trackers.end()) found = trackers.insert(place, measurement.tracker);
+      place = found + 1;
     }
   }
   for (const std::string& tracker : trackers) {
@@ -155,9 +154,8 @@ PageTable overview(const LabResult& result) {
       PageCell cell = verdict_cell(*found, result.level);
       if (cell.tone != Tone::kFaint) {
         cell.number = worst_z(*found);
-        cell.text = fmt::format("{:.2f}", cell.number);
+        cell.text = cell.number < kFarOff ? fmt::format("{:.2f}", cell.number) : "> 40";
       }
-      cell.note = found->biased ? "biased" : "";
       row.push_back(std::move(cell));
     }
     table.rows.push_back(std::move(row));
@@ -168,8 +166,7 @@ PageTable overview(const LabResult& result) {
 void add_refusals(const LabFindings& findings, Page& page) {
   for (const LabMeasurement& measurement : findings.trackers) {
     if (measurement.refusal.empty()) continue;
-    page.blocks.emplace_back(PageText{
-        fmt::format("{} does not apply: {}", lab_label(measurement.tracker), measurement.refusal)});
+    page.blocks.emplace_back(PageText{"Refused: " + measurement.refusal + "."});
   }
 }
 
@@ -209,10 +206,10 @@ void add_setting(const LabFindings& findings, double level, Page& page,
   page.blocks.emplace_back(tracker_table(findings, level));
   add_refusals(findings, page);
   add_figures(findings, {extinction_figure(findings)}, page, files);
-  add_figures(findings, throughput_figures(findings), page, files);
   add_figures(findings, free_path_figures(findings), page, files);
   add_figures(findings, deviation_figures(findings), page, files);
   add_figures(findings, weight_figures(findings), page, files);
+  add_figures(findings, throughput_figures(findings), page, files);
   add_figures(findings, sweep_figures(findings), page, files);
 }
 
@@ -241,11 +238,15 @@ Page first_page(const LabResult& result) {
 
 }  // namespace
 
-std::vector<LabFile> lab_files(const LabResult& result) {
+std::vector<LabFile> lab_files(const LabResult& result, const std::string& command) {
   std::vector<LabFile> plots;
   Page page = first_page(result);
   for (const LabFindings& findings : result.settings) {
     add_setting(findings, result.level, page, plots);
+  }
+  if (!command.empty()) {
+    page.blocks.emplace_back(PageHeading{"Again"});
+    page.blocks.emplace_back(PageCode{command});
   }
   std::vector<LabFile> files = {
       {"report.html", to_html(page)}, {"lab.json", lab_json(result)}, {"lab.csv", lab_csv(result)}};

@@ -15,6 +15,7 @@ struct LabFile {
 };
 
 /// report.html, lab.json, lab.csv, and every plot as <setting>-<plot>.svg.
-std::vector<LabFile> lab_files(const LabResult& result);
+/// @param command that makes the report again, which it shows; may be empty
+std::vector<LabFile> lab_files(const LabResult& result, const std::string& command = {});
 
 }  // namespace freepath

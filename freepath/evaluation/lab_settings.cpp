@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "freepath/base/error.h"
-#include "freepath/base/nearest_name.h"
 #include "freepath/base/random.h"
+#include "freepath/media/density_function.h"
 
 namespace freepath {
 namespace {
@@ -40,8 +40,8 @@ std::shared_ptr<const Field> make_field(const Shape& shape) {
   for (int x = first.x; x < last.x; ++x) {
     std::array<float, BrickMap::kBrickSize> densities{};
     for (int i = 0; i < BrickMap::kBrickSize; ++i) {
-      const double at = (x * BrickMap::kBrickSize + i + 0.5) / kLabVoxels;
-      densities[i] = static_cast<float>(shape(std::clamp(at, 0.0, 1.0)));
+      const int voxel = std::clamp(x * BrickMap::kBrickSize + i, 0, kLabVoxels - 1);
+      densities[i] = static_cast<float>(shape((voxel + 0.5) / kLabVoxels));
     }
     for (int y = first.y; y < last.y; ++y) {
       for (int z = first.z; z < last.z; ++z) {
@@ -206,6 +206,34 @@ LabSetting make_lab_setting(std::string_view name) {
     return setting;
   }
   fail("there is no setting '{}'; there are {}", name, fmt::join(names, ", "));
+}
+
+Medium medium_along_ray(const LabSetting& setting) {
+  std::vector<Component> components = setting.medium->components();
+  for (Component& component : components) {
+    DensityFunction function;
+    function.box = Box3f(Vec3f(0), Vec3f(1));
+    function.cells = Vec3i(kLabVoxels / kLabCell, 1, 1);
+    const auto value = [field = component.density](int voxel) {
+      return field->voxels.value(Vec3i(voxel, 0, 0));
+    };
+    function.evaluate = [value](std::span<const Vec3f> positions, std::span<float> densities) {
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        densities[i] = value(static_cast<int>(std::floor(positions[i].x * kLabVoxels)));
+      }
+    };
+    function.bounds = [value](const Box3f& part) {
+      const auto first = static_cast<int>(std::floor(part.min.x * kLabVoxels + 0.5F));
+      DensityFunction::Bounds bounds{value(first), value(first)};
+      for (int voxel = first - 1; voxel <= first + kLabCell; ++voxel) {
+        bounds.minimum = std::min(bounds.minimum, value(voxel));
+        bounds.maximum = std::max(bounds.maximum, value(voxel));
+      }
+      return bounds;
+    };
+    component.density = make_function_field("lab", std::move(function));
+  }
+  return Medium(std::move(components));
 }
 
 void place_lab_ray(std::size_t slot, float x, float length, RayStream& rays) {

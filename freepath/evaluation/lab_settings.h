@@ -44,6 +44,10 @@ std::span<const LabSettingInfo> lab_setting_infos();
 /// @throws Error for a name that is not in the list, which the message gives
 LabSetting make_lab_setting(std::string_view name);
 
+/// What the ray passes and nothing else: the same densities as functions, the same bounds. For what
+/// judges a medium by all of its super-voxels; those beside the ray are only half full.
+Medium medium_along_ray(const LabSetting& setting);
+
 /// Fixture A of docs/equations.md: the radiance at x = 0, and the optical thickness, by quadrature
 /// of the functions. Voxels change them by less than 1e-4.
 inline constexpr double kFixtureRadiance[3] = {0.74584544, 1.10968931, 0.74747946};

@@ -100,9 +100,14 @@ LabCheck check_mean(const LabMoments& moments, uint64_t paths, double exact) {
   check.estimate = moments.mean(paths);
   check.standard_error = moments.standard_error(paths);
   const double off = check.estimate - exact;
+  if (!std::isfinite(off)) {  // no mean at all: that counts
+    check.z = kFar;
+    check.p = 0;
+    return check;
+  }
   const double beyond = std::max(0.0, std::abs(off) - kRounding * std::abs(exact));
-  check.z = beyond == 0 ? 0 : std::copysign(beyond / check.standard_error, off);
-  if (!(std::abs(check.z) < kFar)) check.z = std::copysign(kFar, off);  // NaN and infinity too
+  const double z = beyond == 0 ? 0 : beyond / check.standard_error;
+  check.z = std::copysign(std::min(z, kFar), off);
   check.p = normal_two_sided_p(check.z);
   if (moments.count < kFew || exact * static_cast<double>(paths) < kFewExpected) {
     check.standing = LabStanding::kRare;
@@ -124,6 +129,11 @@ LabCheck check_distribution(std::span<const LabMoments> bins, std::span<const do
   for (const MergedBin& bin : merge_bins(bins, exact, n)) {
     check.estimate += bin.moments.sum / n;
     check.exact += bin.exact;
+    if (!std::isfinite(bin.moments.sum)) {
+      check.z = kFar;
+      check.p = 0;
+      return check;
+    }
     const bool few = bin.moments.count < kFewInBin;
     if (few || !bin.moments.has_normal_mean(paths)) {  // counts with the escapes, so to speak
       heavy += few ? 0 : 1;

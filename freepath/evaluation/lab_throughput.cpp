@@ -242,7 +242,10 @@ LabThroughput throughput_of_scatterings(const LabSetting& setting, const LabCurv
   }
   return summarize_table(
       table, kLabScatterings + 1, walk, [](int scattering) { return double(scattering); },
-      [&](int scattering, int channel) { return std::pow(albedo[channel], scattering); });
+      [&](int scattering, int channel) {
+        const double power = std::pow(albedo[channel], scattering);
+        return std::isnan(albedo[channel]) ? albedo[channel] : power;  // the power of 0 is 1
+      });
 }
 
 }  // namespace freepath
