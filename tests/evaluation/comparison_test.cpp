@@ -54,15 +54,15 @@ TEST(Comparison, TellsBiasedMethodsFromUnbiasedOnes) {
   const Comparison comparison =
       compare(small_subject(),
               settings_for({"delta", "weighted-delta", "decomposition", "weighted-decomposition",
-                            "spectral-decomposition", "ray-marching:step=8"}));
+                            "spectral-decomposition", "ray-marching:step=24"}));
   for (const ConfigurationResult& result : comparison.configurations) {
-    const bool march = result.configuration.tracker == "ray-marching:step=8";
+    const bool march = result.configuration.tracker == "ray-marching:step=24";
     EXPECT_EQ(result.passes_bias_test, !march) << result.name << ": " << result.bias.worst();
     EXPECT_EQ(result.is_biased, march);
   }
   EXPECT_EQ(comparison.tests, 6U * (3 + 3 * 12));
   const auto findings = findings_of(comparison);
-  EXPECT_NE(findings.back().find("ray-marching:step=8"), std::string::npos) << findings.back();
+  EXPECT_NE(findings.back().find("ray-marching:step=24"), std::string::npos) << findings.back();
 }
 
 TEST(Comparison, HoldsForChromaticMedia) {
@@ -76,13 +76,17 @@ TEST(Comparison, HoldsForChromaticMedia) {
 
 // Of an unbiased method MSE is its variance, which its own samples tell too.
 TEST(Comparison, StatesErrorsThatAgreeWithVariances) {
-  const Comparison comparison = compare(small_subject(), settings_for({"delta", "decomposition"}));
+  ComparisonSettings settings = settings_for({"delta", "decomposition"});
+  settings.repeats = 16;
+  settings.samples = 256;
+  settings.reference.samples = 128;  // would add an eighth, were its variance not taken off
+  const Comparison comparison = compare(small_subject(), settings);
   for (const ConfigurationResult& result : comparison.configurations) {
     const Interval mse = result.over_runs([](const ComparisonRun& run) { return run.error.mse; });
     const Interval variance = result.over_runs([](const ComparisonRun& run) {
       return (run.variance[0] + run.variance[1] + run.variance[2]) / 3;
     });
-    EXPECT_NEAR(mse.value / variance.value, 1, 0.03) << result.name;
+    EXPECT_NEAR(mse.value / variance.value, 1, 0.05) << result.name;
     EXPECT_LT(*mse.high - *mse.low, 0.2 * mse.value);
   }
 }

@@ -24,10 +24,10 @@ inline Subject small_subject(bool chromatic = false, int width = 64, int height 
   CameraOptions options;
   options.width = width;
   options.height = height;
-  const auto camera =
-      std::make_shared<const Camera>(make_camera(*medium, options, UpAxis::kY));
+  const auto camera = std::make_shared<const Camera>(make_camera(*medium, options, UpAxis::kY));
   LightOptions light;
   light.environment = Spectrum(0.5F, 0.7F, 1.0F);
+  light.sun = false;
   const auto lights = std::make_shared<const Lights>(make_lights(light, UpAxis::kY));
   Subject subject;
   subject.name = "ball";
