@@ -23,7 +23,7 @@ std::vector<std::string> split_methods(std::string_view text) {
     } else if (methods.empty() || methods.back().find(':') == std::string::npos) {
       fail("the option '{}' follows no method with options; methods are NAME:OPTION=VALUE", item);
     } else {
-      methods.back() += "," + std::string(item);
+      methods.back().append(",").append(item);
     }
     if (comma == std::string_view::npos) return methods;
     text.remove_prefix(comma + 1);

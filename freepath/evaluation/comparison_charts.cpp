@@ -99,7 +99,9 @@ NamedFigure convergence_chart(const Comparison& comparison) {
   Chart chart{.title = "Convergence",
               .x = {.label = "time of a run [s]", .logarithmic = true},
               .y = {.label = "MSE", .logarithmic = true},
-              .series = {}};
+              .series = {},
+              .width = 1120,
+              .height = 400};
   for (const ConfigurationResult& result : comparison.configurations) {
     chart.series.push_back(convergence_of(result));
   }

@@ -67,10 +67,11 @@ BarLayout layout_of(const BarChart& chart) {
   double names = 0;
   double values = 0;
   for (const ChartBar& bar : chart.bars) {
-    names = std::max(names, text_width(bar.name, kLabelSize));
+    constexpr double kBold = 1.08;  // bold letters are wider
+    names = std::max(names, (bar.is_best ? kBold : 1) * text_width(bar.name, kLabelSize));
     values = std::max(values, text_width(value_text(bar), kTickSize));
   }
-  const double title_lines = static_cast<double>(layout.title.size());
+  const auto title_lines = static_cast<double>(layout.title.size());
   SvgBox& plot = layout.plot;
   plot.top = layout.title.empty() ? kMargin : 24 + 20 * title_lines;
   const auto rows = static_cast<double>(std::max<std::size_t>(1, chart.bars.size()));
@@ -136,12 +137,13 @@ std::string to_svg(const BarChart& chart) {
   }
   svg.end_clip();
   draw_bottom_axis(svg, layout.axis, chart.axis.label, plot);
+  const double names = plot.left - kNameGap - kMargin;
   for (std::size_t i = 0; i < chart.bars.size(); ++i) {
     const ChartBar& bar = chart.bars[i];
     const double baseline = layout.middle(i) + 4.5;
     const std::string_view weight = bar.is_best ? R"(font-weight="600")" : "";
-    svg.text(plot.left - kNameGap, baseline, TextAnchor::kEnd, kLabelSize, escape_markup(bar.name),
-             weight);
+    svg.text(plot.left - kNameGap, baseline, TextAnchor::kEnd, kLabelSize,
+             escape_markup(shortened(bar.name, kLabelSize, names)), weight);
     // A halo keeps the mark's line and the grid off the digits.
     svg.text(right_end(bar, layout) + kValueGap, baseline, TextAnchor::kStart, kTickSize,
              escape_markup(value_text(bar)),

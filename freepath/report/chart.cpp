@@ -101,18 +101,23 @@ double place_in_rows(std::vector<LegendEntry>& entries, double left, double widt
   constexpr double kGap = 22;
   const double column = widest(entries) + kGap;
   const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor((width + kGap) / column)));
+  double row = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    entries[i].x = left + static_cast<double>(i % columns) * column;
-    entries[i].y = static_cast<double>(i / columns) * kLegendRow;
+    const std::size_t place = i % columns;
+    if (place == 0 && i > 0) row += kLegendRow;
+    entries[i].x = left + static_cast<double>(place) * column;
+    entries[i].y = row;
   }
-  return static_cast<double>((entries.size() + columns - 1) / columns) * kLegendRow;
+  return row + kLegendRow;
 }
 
-void draw_legend(SvgWriter& svg, const std::vector<LegendEntry>& entries, double top) {
+void draw_legend(SvgWriter& svg, const std::vector<LegendEntry>& entries, double top,
+                 double right) {
   for (const LegendEntry& entry : entries) {
+    const double room = right - entry.x - kKeyWidth - kKeyGap;
     draw_legend_key(svg, entry.mark, entry.look, entry.x, top + entry.y);
     svg.text(entry.x + kKeyWidth + kKeyGap, top + entry.y + 4, TextAnchor::kStart, kTickSize,
-             escape_markup(entry.name));
+             escape_markup(shortened(entry.name, kTickSize, room)));
   }
 }
 
@@ -144,7 +149,7 @@ ChartLayout layout_of(const Chart& chart, const std::vector<SeriesLook>& looks) 
                      legend_of(chart, looks)};
   layout.title = wrapped(chart.title, kTitleSize, chart.width - 2 * kMargin);
   SvgBox& plot = layout.plot;
-  const double title_lines = static_cast<double>(layout.title.size());
+  const auto title_lines = static_cast<double>(layout.title.size());
   plot.top = layout.title.empty() ? kMargin : 26 + 20 * title_lines;
   plot.bottom = chart.height - kBottomAxisHeight - 4;
   plot.right = chart.width - 24;
@@ -203,7 +208,7 @@ std::string to_svg(const Chart& chart) {
   svg.end_clip();
   draw_bottom_axis(svg, layout.x, chart.x.label, plot);
   draw_left_axis(svg, layout.y, chart.y.label, plot, kMargin + 10);
-  draw_legend(svg, layout.legend, layout.legend_top);
+  draw_legend(svg, layout.legend, layout.legend_top, chart.width - kMargin + 1);
   return std::move(svg).finished();
 }
 

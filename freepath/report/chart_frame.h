@@ -48,8 +48,8 @@ struct PlotAxis {
   double from = 0, to = 0;  ///< Where its minimum and maximum are.
   std::vector<AxisTick> ticks = {};
 
-  /// NaN where the value has no place, or is not finite. Kept within reach of the plot, so that lines to values far
-  /// outside remain drawable.
+  /// NaN where the value has no place, or is not finite. Kept within reach of the plot, so that
+  /// lines to values far outside remain drawable.
   double place(double value) const;
 };
 

@@ -70,7 +70,7 @@ std::string_view tone_class(PageCell::Tone tone) {
 std::string head_html(const PageColumn& column) {
   const std::string title =
       column.meaning.empty() ? "" : fmt::format(" title=\"{}\"", escape_markup(column.meaning));
-  return fmt::format("<th scope=\"col\"{}{}><button type=\"button\">{}</button></th>",
+  return fmt::format(R"(<th scope="col"{}{}><button type="button">{}</button></th>)",
                      column.is_numeric ? " class=\"number\"" : "", title,
                      escape_markup(column.name));
 }

@@ -168,8 +168,8 @@ html:not(.js) .enlarge{cursor:auto}
 .colour-scale span:nth-child(2){text-align:center}
 .colour-scale span:nth-child(3){text-align:right}
 .enlarged{border:0;padding:0;background:none;max-width:96vw;max-height:96vh;color:#fff;
-  cursor:zoom-out;overflow:hidden}
-.enlarged::backdrop{background:rgb(8 9 11/.88)}
+  cursor:zoom-out;overflow:hidden;outline:none}
+.enlarged::backdrop{background:rgb(8 9 11/.94)}
 .enlarged img{display:block;width:min(94vw,calc(86vh*var(--aspect)));height:auto;border-radius:4px}
 .enlarged p{margin:.6rem 0 0;text-align:center;font-size:.9375rem}
 

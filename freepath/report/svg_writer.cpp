@@ -105,7 +105,7 @@ std::vector<std::string> wrapped(const std::string& text, double size, double wi
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
-    const std::string longer = line.empty() ? word : line + " " + word;
+    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
     if (!line.empty() && text_width(longer, size) > width) {
       lines.push_back(line);
       line = word;
@@ -116,6 +116,20 @@ std::vector<std::string> wrapped(const std::string& text, double size, double wi
   }
   if (!line.empty()) lines.push_back(line);
   return lines;
+}
+
+std::string shortened(const std::string& text, double size, double width) {
+  if (text_width(text, size) <= width) return text;
+  constexpr std::string_view kEllipsis = "\u2026";
+  std::string result = text;
+  while (!result.empty() && text_width(result, size) + size > width) {
+    // A character is a byte that continues none, and those that continue it.
+    while (result.size() > 1 && (static_cast<unsigned char>(result.back()) & 0xC0) == 0x80) {
+      result.pop_back();
+    }
+    result.pop_back();
+  }
+  return result.append(kEllipsis);
 }
 
 SvgWriter::SvgWriter(double width, double height, std::string_view title,

@@ -23,13 +23,16 @@ struct SvgBox {
 /// A coordinate, to a hundredth, without needless digits.
 std::string coordinate(double value);
 
-/// How wide a text is about, on the wide side: fonts differ, and this knows none of them. @param
-/// size of the font
+/// How wide a text is about, on the wide side: fonts differ, and this knows none of them.
+/// @param size of the font
 double text_width(std::string_view text, double size);
 double text_width(const TickLabel& label, double size);
 
 /// A text broken between words into lines that are not wider, as far as its words allow.
 std::vector<std::string> wrapped(const std::string& text, double size, double width);
+
+/// A text, cut off with an ellipsis where it is wider.
+std::string shortened(const std::string& text, double size, double width);
 
 enum class TextAnchor { kStart, kMiddle, kEnd };
 

@@ -294,6 +294,15 @@ TEST(BarChart, LogarithmicBarsBeginAtTheLeftEnd) {
   EXPECT_NEAR(widths[2], 3 * widths[0], 0.05);
 }
 
+TEST(BarChart, LongNamesAreCutBetweenCharacters) {
+  BarChart chart = three_bars();
+  for (int i = 0; i < 100; ++i) chart.bars[0].name += "µ";
+  const std::string svg = to_svg(chart);
+  EXPECT_EQ(xml_fault(svg), "");
+  EXPECT_NE(svg.find("µ\u2026</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("\uFFFD"), std::string::npos);
+}
+
 TEST(BarChart, BestBarStandsOutAndBrokenOnesHaveNoBar) {
   BarChart chart = three_bars();
   chart.bars.push_back({"broken", kNan, kNan, kNan});

@@ -57,7 +57,7 @@ std::string xml_fault(const std::string& text) {
     std::smatch name;
     if (!std::regex_search(tag, name, kName)) return "no name: " + tag;
     if (open.empty() && had_root) return "a second root: " + tag;
-    const std::string fault = attributes_fault(name.suffix());
+    std::string fault = attributes_fault(name.suffix());
     if (!fault.empty()) return fault;
     had_root = true;
     if (!is_closed) open.push_back(name.str());

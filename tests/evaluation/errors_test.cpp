@@ -1,0 +1,149 @@
+#include "freepath/evaluation/errors.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "freepath/base/error.h"
+#include "freepath/base/random.h"
+#include "freepath/evaluation/heat_map.h"
+#include "freepath/evaluation/pixel_estimates.h"
+#include "tests/statistics.h"
+
+namespace freepath {
+namespace {
+
+constexpr int kWidth = 80;
+constexpr int kHeight = 50;
+
+float truth(std::size_t i) { return 1 + 0.5F * std::sin(0.01F * static_cast<float>(i)); }
+
+/// Pictures of the truth with noise of known standard deviation, nearly normal.
+PixelEstimates noisy(uint64_t seed, double deviation, float samples = 4) {
+  PixelEstimates estimates{.width = kWidth, .height = kHeight};
+  for (std::size_t i = 0; i < 3 * estimates.pixel_count(); ++i) {
+    RandomStream random(seed, static_cast<uint32_t>(i), 0, 0);
+    double sum = -6;
+    for (int j = 0; j < 12; ++j) sum += random.uniform();
+    estimates.mean.push_back(truth(i) + static_cast<float>(deviation * sum));
+    estimates.variance.push_back(static_cast<float>(deviation * deviation));
+  }
+  estimates.samples.assign(estimates.pixel_count(), samples);
+  return estimates;
+}
+
+// E[(x - r)²] is the sum of both variances; what the reference adds is taken off.
+TEST(SquaredError, IsThatOfThePictureAlone) {
+  testing::RunningStatistics mse;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    const SquaredError error = squared_error(noisy(seed, 0.1).mean, noisy(1000 + seed, 0.1));
+    mse.add(error.mse);
+    EXPECT_NEAR(error.mse, (error.channel_mse[0] + error.channel_mse[1] + error.channel_mse[2]) / 3,
+                1e-12);
+  }
+  EXPECT_TRUE(testing::check_mean("MSE", mse, 0.01, {.largest_relative_error = 0.01}));
+}
+
+TEST(BiasTest, HasStandardNormalScores) {
+  const BiasTest test = test_bias(noisy(1, 0.1), noisy(2, 0.2));
+  EXPECT_EQ(test.blocks_across, 5);
+  EXPECT_EQ(test.blocks_down, 4);  // the last row of blocks has 2 rows of pixels
+  EXPECT_EQ(test.tests(), 3U + 3 * 20);
+  testing::RunningStatistics squares;
+  for (uint64_t seed = 0; seed < 30; ++seed) {
+    for (const float z : test_bias(noisy(2 * seed, 0.1), noisy(2 * seed + 1, 0.2)).block_z) {
+      squares.add(z * z);
+    }
+  }
+  EXPECT_TRUE(testing::check_mean("z²", squares, 1, {.largest_relative_error = 0.05}));
+}
+
+TEST(BiasTest, FindsABlockThatIsOff) {
+  PixelEstimates picture = noisy(1, 0.1);
+  for (int y = 16; y < 32; ++y) {
+    for (int x = 32; x < 48; ++x) picture.mean[3 * (y * kWidth + x) + 1] += 0.06F;
+  }
+  const BiasTest test = test_bias(picture, noisy(2, 0.1));
+  const std::size_t block = 1 * 5 + 2;
+  EXPECT_EQ(test.worst(), std::abs(double{test.block_z[3 * block + 1]}));
+  EXPECT_GT(test.worst(), 5);
+}
+
+TEST(BiasTest, LeavesPixelsWithoutSamplesOut) {
+  PixelEstimates picture = noisy(1, 0.1);
+  picture.mean[0] = picture.mean[1] = picture.mean[2] = 1e6F;
+  picture.samples[0] = 0;
+  EXPECT_LT(test_bias(picture, noisy(2, 0.1)).worst(), 5);
+}
+
+TEST(Merged, WeighsBySamples) {
+  PixelEstimates few = noisy(1, 0.2, 2);
+  PixelEstimates many = noisy(2, 0.1, 8);
+  few.lookups.assign(few.pixel_count(), 10);
+  many.lookups.assign(many.pixel_count(), 20);
+  const PixelEstimates both = merged({&few, &many});
+  EXPECT_FLOAT_EQ(both.mean[7], 0.2F * few.mean[7] + 0.8F * many.mean[7]);
+  EXPECT_FLOAT_EQ(both.variance[7], 0.04F * few.variance[7] + 0.64F * many.variance[7]);
+  EXPECT_FLOAT_EQ(both.samples[7], 10);
+  EXPECT_FLOAT_EQ(both.lookups[7], 18);
+}
+
+TEST(PixelEstimates, TakesVariancesFromHalvesOrChannels) {
+  Image image{.width = 1, .height = 1};
+  image.channels = {"R", "G", "B", "A.R", "A.G", "A.B", "B.R", "B.G", "B.B"};
+  image.values = {1, 2, 3, 1.5F, 2, 3, 0.5F, 2, 3};
+  bool known = false;
+  EXPECT_FLOAT_EQ(estimates_of(image, "halves", known).variance[0], 0.25F);
+  EXPECT_TRUE(known);
+  const Image round_trip = to_image(noisy(3, 0.1));
+  EXPECT_EQ(estimates_of(round_trip, "image", known).variance, noisy(3, 0.1).variance);
+  EXPECT_TRUE(known);
+  image.channels.resize(3);
+  image.values.resize(3);
+  EXPECT_EQ(estimates_of(image, "colour", known).variance[0], 0);
+  EXPECT_FALSE(known);
+}
+
+TEST(PixelEstimates, RefusesWhatIsNotFinite) {
+  Image image = to_image(noisy(3, 0.1));
+  image.values[7 * 81] = std::numeric_limits<float>::infinity();
+  bool known = false;
+  try {
+    estimates_of(image, "broken.exr", known);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("broken.exr: pixel (1, 1)"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(HeatMap, RunsFromDarkToBright) {
+  const ColorScale scale{.low = 0.01, .high = 100, .logarithmic = true};
+  EXPECT_DOUBLE_EQ(scale.place(1), 0.5);
+  EXPECT_DOUBLE_EQ(scale.value(0.25), 0.1);
+  EXPECT_EQ(scale.place(0), 0);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Image map = heat_map(std::vector<float>{0, 1, 1000, nan}, 4, 1, scale);
+  const auto brightness = [&](int i) {
+    return map.pixel(i, 0)[0] + map.pixel(i, 0)[1] + map.pixel(i, 0)[2];
+  };
+  EXPECT_LT(brightness(0), brightness(1));
+  EXPECT_LT(brightness(1), brightness(2));
+  EXPECT_EQ(map.pixel(3, 0)[0], map.pixel(3, 0)[1]);  // grey: unknown
+}
+
+TEST(HeatMap, ScalesHoldMostValues) {
+  std::vector<float> values(1000, 2.0F);
+  values[0] = 0;
+  values[1] = 1e9F;
+  for (int i = 2; i < 100; ++i) values[i] = 0.5F;
+  const ColorScale scale = logarithmic_scale({values});
+  EXPECT_EQ(scale.low, 0.5);
+  EXPECT_EQ(scale.high, 2.0);
+}
+
+}  // namespace
+}  // namespace freepath

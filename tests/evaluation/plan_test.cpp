@@ -1,0 +1,79 @@
+#include "freepath/evaluation/plan.h"
+
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "freepath/base/error.h"
+#include "freepath/evaluation/pixel_estimates.h"
+#include "tests/evaluation/small_subject.h"
+
+namespace freepath {
+namespace {
+
+using testing::small_subject;
+
+PilotCandidate candidate(const std::string& tracker) {
+  PilotCandidate candidate;
+  candidate.name = tracker;
+  candidate.configuration.tracker = tracker;
+  return candidate;
+}
+
+TEST(Pilots, TellWhatRefusesAndWhatIsBiased) {
+  PilotCandidate march = candidate("ray-marching");
+  march.configuration.interpolation = Interpolation::kTrilinear;
+  const auto results =
+      run_pilots(small_subject(), {candidate("delta"), candidate("closed-form"), march}, {});
+  EXPECT_TRUE(results[0].refusal.empty());
+  EXPECT_TRUE(results[0].cost.has_value());
+  EXPECT_NE(results[1].refusal.find("homogeneous"), std::string::npos) << results[1].refusal;
+  EXPECT_FALSE(results[1].cost);
+  EXPECT_TRUE(results[2].is_biased);
+  EXPECT_EQ(cheapest(results), 0U);
+}
+
+// Look-ups of a path are a property of method and medium: those of a longer rendering agree.
+TEST(Pilots, ForeseeLookupsAndNoise) {
+  const Subject subject = small_subject();
+  const auto results = run_pilots(subject, {candidate("delta"), candidate("decomposition")}, {});
+  RenderSettings settings;
+  settings.samples = 256;
+  const RenderResult rendered = subject.render(settings, {});
+  const double lookups =
+      static_cast<double>(rendered.statistics().lookups) / static_cast<double>(rendered.paths);
+  EXPECT_NEAR(results[0].lookups_per_path / lookups, 1, 0.03);
+  EXPECT_LT(results[1].lookups_per_path, results[0].lookups_per_path);
+  // Noise of that rendering, and the time foreseen to it. Times are the machine's: a factor of 4
+  // is far from what a wrong power of noise, time or samples would give, which is 100 or more.
+  const PixelEstimates picture = estimates_of(rendered.film);
+  const auto mean = [](const std::vector<float>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  const double noise = std::sqrt(mean(picture.variance)) / mean(picture.mean);
+  const double ratio = results[0].seconds_to(noise)->value / rendered.seconds;
+  EXPECT_GT(ratio, 0.25);
+  EXPECT_LT(ratio, 4);
+  EXPECT_NEAR(results[0].seconds_to(noise / 10)->value / results[0].seconds_to(noise)->value, 100,
+              1e-6);
+}
+
+TEST(Pilots, CanTryOtherSubjects) {
+  const Subject grey = small_subject();
+  const Subject chromatic = small_subject(true);
+  PilotCandidate other = candidate("delta");
+  other.subject = &chromatic;
+  const auto results = run_pilots(grey, {candidate("delta"), other}, {});
+  EXPECT_NE(results[0].lookups_per_path, results[1].lookups_per_path);
+}
+
+TEST(Pilots, EndWhenTheyAreAsked) {
+  EXPECT_THROW(run_pilots(small_subject(), {candidate("delta")}, {}, [](double) { return false; }),
+               Error);
+}
+
+}  // namespace
+}  // namespace freepath
