@@ -89,6 +89,7 @@ class Lab {
       for (const LabSettingInfo& info : lab_setting_infos()) names.emplace_back(info.name);
     }
     std::vector<LabSetting> settings;
+    settings.reserve(names.size());
     for (const std::string& name : names) settings.push_back(make_lab_setting(name));
     return settings;
   }

@@ -71,6 +71,7 @@ std::string numbered(const std::string& name, std::size_t number, std::size_t co
 /// mu_t T: the density of real collisions of a tracker without weights.
 std::vector<double> collision_density(const LabCurves& curves, int channel) {
   std::vector<double> density;
+  density.reserve(kLabBins);
   for (int bin = 0; bin < kLabBins; ++bin) {
     density.push_back(kLabBins * (curves.transmittance(double{1} * bin / kLabBins, channel) -
                                   curves.transmittance(double{1} * (bin + 1) / kLabBins, channel)));

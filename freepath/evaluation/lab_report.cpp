@@ -25,7 +25,9 @@ PageCell text_cell(std::string text, Tone tone = Tone::kPlain) {
 }
 
 PageCell number_cell(double number, int digits = 3) {
-  return {.text = fmt::format("{:.{}g}", number, digits), .number = number};
+  const bool whole = number >= std::pow(10, digits) && number < 1e6;
+  return {.text = whole ? fmt::format("{:.0f}", number) : fmt::format("{:.{}g}", number, digits),
+          .number = number};
 }
 
 /// Largest distance of the comparisons that count, in standard errors.
