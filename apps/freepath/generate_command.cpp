@@ -23,6 +23,9 @@ constexpr const char* kFooter =
   cloud     a cumulus with a flat base; field density, 0 to 1
   smoke     a rising column; field density, 0 to 1
   fireball  an explosion; fields density, 0 to 1, and temperature, 300 to 3000 K
+  fog       a bank that is dense everywhere, 0.55 to 1; field density
+  noise     a ball of voxels that have nothing to do with each other; field density, 0 to 1
+  puffs     round puffs far apart, the same at any resolution; field density, 0 to 1
 
 The longest side is 100 units of the world, up is +y, the volume stands on y = 0. The same seed and
 resolution give the same file on any number of threads.
@@ -34,7 +37,8 @@ Examples:
 
 using Generator = std::vector<Field> (*)(const ProceduralOptions&);
 const std::map<std::string, Generator> kGenerators{
-    {"cloud", generate_cloud}, {"smoke", generate_smoke}, {"fireball", generate_fireball}};
+    {"cloud", generate_cloud}, {"smoke", generate_smoke}, {"fireball", generate_fireball},
+    {"fog", generate_fog},     {"noise", generate_noise}, {"puffs", generate_puffs}};
 
 struct Options {
   std::string kind, output;
@@ -70,9 +74,9 @@ void add_generate_command(CLI::App& program) {
   CLI::App* const command =
       program.add_subcommand("generate", "Make a procedural volume and write it to a .vdb file");
   command->footer(kFooter);
-  command->add_option("KIND", options->kind, "cloud, smoke or fireball")
+  command->add_option("KIND", options->kind, "cloud, smoke, fireball, fog, noise or puffs")
       ->required()
-      ->check(CLI::IsMember({"cloud", "smoke", "fireball"}));
+      ->check(CLI::IsMember(kGenerators));
   command->add_option("-o,--output", options->output, "File to write (.vdb)")->required();
   command
       ->add_option("--resolution", options->volume.resolution,

@@ -8,12 +8,20 @@ namespace {
 
 constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite
 
-/// Sums of differences and of their variances.
+/// Weights are products of floats, and means are rounded to floats: where nothing varies that is
+/// all that differs, by the same in every pixel.
+constexpr double kRounding = 0x1p-21;  // relative: some units in the last place
+
+/// Sums of differences, of their variances, and of how far rounding may move them.
 struct Sums {
   double difference = 0;
   double variance = 0;
+  double rounding = 0;
 
-  double z() const { return difference == 0 ? 0 : difference / std::sqrt(variance); }
+  double z() const {
+    const double beyond = std::abs(difference) - rounding;
+    return beyond <= 0 ? 0 : std::copysign(beyond / std::sqrt(variance), difference);
+  }
 };
 
 }  // namespace
@@ -62,13 +70,11 @@ BiasTest test_bias(const PixelEstimates& estimates, const PixelEstimates& refere
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const std::size_t i = 3 * pixel + channel;
       const double difference = double{estimates.mean[i]} - reference.mean[i];
-      // Means are rounded to floats, which is all that differs where nothing varies.
-      const double rounding = 0x1p-24 * std::hypot(estimates.mean[i], reference.mean[i]);
-      const double variance =
-          double{estimates.variance[i]} + reference.variance[i] + rounding * rounding;
+      const double variance = double{estimates.variance[i]} + reference.variance[i];
       for (Sums* sums : {&whole[channel], &blocks[3 * block + channel]}) {
         sums->difference += difference;
         sums->variance += variance;
+        sums->rounding += kRounding * std::abs(double{reference.mean[i]});
       }
     }
   }

@@ -56,7 +56,8 @@ void copy_ray(RayStream& rays, std::size_t from, std::size_t to) {
 
 }  // namespace
 
-PathWavefront::PathWavefront(const PathSetup& setup) : setup_(setup) {
+PathWavefront::PathWavefront(const PathSetup& setup)
+    : setup_(setup), emits_(setup.medium->emits()) {
   for (const Component& component : setup.medium->components()) {
     phases_.push_back(component.phase);
     albedos_.push_back(albedo_of(component));
@@ -174,7 +175,7 @@ void PathWavefront::take_weights(Path& path, std::size_t slot) {
     path.throughput = weight;
     path.density = channels_of(flights_.density, slot, channels);
   }
-  if (setup_.medium->emits()) {
+  if (emits_) {
     path.radiance += rays_.weighted() ? emitted : path.throughput * emitted;
   }
   if (!rays_.weighted()) path.throughput *= weight;

@@ -117,6 +117,7 @@ class PathWavefront {
   void trace_shadows();
 
   const PathSetup& setup_;
+  bool emits_;                         // whether the medium does
   std::vector<PhaseFunction> phases_;  // of the components
   std::vector<Spectrum> albedos_;      // of the components
   std::vector<Path> paths_in_flight_;

@@ -26,6 +26,17 @@ std::vector<Field> generate_cloud(const ProceduralOptions& options);
 /// A column of smoke that rises, widens and curls. Field "density".
 std::vector<Field> generate_smoke(const ProceduralOptions& options);
 
+/// A bank of fog: dense everywhere, 0.55 to 1, in slow waves. Field "density".
+std::vector<Field> generate_fog(const ProceduralOptions& options);
+
+/// A ball of voxels that have nothing to do with each other, uniform from 0 to 1: the highest
+/// frequency that a grid holds. Field "density".
+std::vector<Field> generate_noise(const ProceduralOptions& options);
+
+/// Round puffs, far apart: the same function of place at any resolution, most of it 0. Field
+/// "density".
+std::vector<Field> generate_puffs(const ProceduralOptions& options);
+
 /// An explosion: hot where it is deep, sooty outside. Fields "density" and "temperature" (kelvin,
 /// 300 to 3000 wherever there is density).
 std::vector<Field> generate_fireball(const ProceduralOptions& options);

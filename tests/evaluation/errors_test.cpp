@@ -72,6 +72,17 @@ TEST(BiasTest, FindsABlockThatIsOff) {
   EXPECT_GT(test.worst(), 5);
 }
 
+// A last digit that is off everywhere is no bias; more than that is, where nothing varies.
+TEST(BiasTest, KnowsRoundingFromBias) {
+  PixelEstimates exact = noisy(1, 0);
+  for (std::size_t i = 0; i < exact.mean.size(); ++i) exact.mean[i] = truth(i);
+  PixelEstimates rounded = exact;
+  for (float& value : rounded.mean) value = std::nextafter(value, 10.0F);
+  EXPECT_EQ(test_bias(rounded, exact).worst(), 0);
+  for (float& value : rounded.mean) value *= 1.00001F;
+  EXPECT_GT(test_bias(rounded, exact).worst(), 1e6);
+}
+
 TEST(BiasTest, LeavesPixelsWithoutSamplesOut) {
   PixelEstimates picture = noisy(1, 0.1);
   picture.mean[0] = picture.mean[1] = picture.mean[2] = 1e6F;
