@@ -65,7 +65,7 @@ struct PicturePlan {
 };
 
 /// A size of the same shape with fewer pixels.
-PictureSize pilot_size(const Subject& whole) {
+PictureSize pilot_size(const PictureSize& whole) {
   const double pixels = static_cast<double>(whole.width) * whole.height;
   const double scale = std::min(1.0, std::sqrt(kPilotPixels / pixels));
   return {std::max(1, static_cast<int>(std::lround(whole.width * scale))),
@@ -116,10 +116,15 @@ void plan_super_voxels(const Options& options, const PictureSize& size, const Me
   plan.super_voxel_count = medium.super_voxels().cell_count();
   std::vector<LoadedSubject> subjects;
   for (const int edge : kSuperVoxelSizes) {
-    subjects.push_back(subject_of_medium(
-        options.picture, std::make_shared<const Medium>(medium.components(), edge), size));
-    plan.edges.push_back(edge);
+    try {
+      subjects.push_back(subject_of_medium(
+          options.picture, std::make_shared<const Medium>(medium.components(), edge), size));
+      plan.edges.push_back(edge);
+    } catch (const Error&) {
+      // Too many super-voxels of that size.
+    }
   }
+  if (subjects.empty()) return;
   std::vector<PilotCandidate> candidates;
   for (std::size_t i = 0; i < subjects.size(); ++i) {
     PilotCandidate candidate = plan.trackers.results[*plan.trackers.best].candidate;
@@ -136,7 +141,7 @@ void plan_super_voxels(const Options& options, const PictureSize& size, const Me
 
 PicturePlan make_plan(const CLI::App& command, const Options& options) {
   const LoadedSubject whole = load_subject(command, options.picture);
-  const PictureSize size = pilot_size(whole.subject);
+  const PictureSize size = pilot_size(whole.film);
   const LoadedSubject loaded = whole.medium ? subject_of_medium(options.picture, whole.medium, size)
                                             : load_subject(command, options.picture, size);
   PilotSettings settings;
@@ -193,17 +198,24 @@ void print_plan(const PicturePlan& plan, const Options& options) {
   fmt::print("auto: {}, since {}\n\n", plan.automatic, plan.reason);
   print_table(plan.trackers, plan, options.noise, "tracker");
   if (!plan.trackers.best) {
-    fmt::print("\nThe pilot saw no noise: any tracker will do.\n");
+    const bool any = std::any_of(plan.trackers.results.begin(), plan.trackers.results.end(),
+                                 [](const PilotResult& result) { return result.refusal.empty(); });
+    if (any) {
+      fmt::print("\nThe pilot saw no noise: any tracker will do.\n");
+    } else {
+      fmt::print("\nNo tracker applies with these methods.\n");
+    }
     return;
   }
   const PilotResult& best = plan.trackers.results[*plan.trackers.best];
   if (plan.super_voxels.best) {
-    fmt::print(
-        "\nsuper-voxels: edge of {} voxels, {} of them, chosen by the cost model; with {}:\n",
-        plan.chosen_edge, plan.super_voxel_count, best.candidate.name);
+    fmt::print("\nsuper-voxels: edge of {} voxels, {} of them; with {}:\n", plan.chosen_edge,
+               plan.super_voxel_count, best.candidate.name);
     print_table(plan.super_voxels, plan, options.noise, "edge [voxels]");
   }
-  fmt::print("\nTake --tracker {}", best.candidate.name);
+  fmt::print("\nTake --tracker {} --transmittance {} --interpolation {}", best.candidate.name,
+             best.candidate.configuration.transmittance,
+             to_string(best.candidate.configuration.interpolation));
   if (plan.super_voxels.best) {
     const int edge = plan.edges[*plan.super_voxels.best];
     if (edge != plan.chosen_edge) fmt::print(" --super-voxel {}", edge);

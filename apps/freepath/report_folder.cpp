@@ -47,7 +47,14 @@ void set_command_line(int argc, const char* const* argv) {
     constexpr const char* kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
     const bool plain = !argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos;
-    command += plain ? " " + argument : " '" + argument + "'";
+    command += ' ';
+    if (plain) {
+      command += argument;
+      continue;
+    }
+    command += '\'';
+    for (const char c : argument) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    command += '\'';
   }
   remembered_command() = command;
 }

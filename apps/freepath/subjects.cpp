@@ -9,6 +9,7 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/render_scene.h"
 #include "freepath/io/content_digest.h"
+#include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/render/paths/scene_renderer.h"
 #include "freepath/transport/auto_tracker.h"
 
@@ -61,6 +62,9 @@ LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions&
   if (const auto* image = std::get_if<std::string>(&lights.environment)) {
     files.emplace_back(*image);
   }
+  for (const std::string& phase : options.volumes.phase) {
+    for (const auto& file : phase_function_files(phase)) files.push_back(file);
+  }
   loaded.subject.digest = digest_of(command, files);
   return loaded;
 }
@@ -90,6 +94,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   const SceneCamera& camera = *built->scene.camera;
   const PixelWindow window = pixel_window(loaded.settings.crop, camera.width(), camera.height());
   check_memory(window, FilmPlan());
+  loaded.film = {camera.width(), camera.height()};
   loaded.automatic_tracker = standard_tracker(built->scene);
   loaded.reason = loaded.automatic_tracker == "spectral"
                       ? "media have colour, and surfaces take most of the time"
@@ -106,10 +111,11 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   };
   subject.render_reference = [built, color = plan.color](const RenderSettings& settings,
                                                          const ProgressFunction& progress) {
-    const SampleKind samples = std::exchange(built->scene.samples, SampleKind::kIndependent);
-    RenderResult result = render_scene(built->scene, color, settings, progress);
-    built->scene.samples = samples;
-    return result;
+    // Put back whatever happens.
+    const auto put_back = [&](const SampleKind* kind) { built->scene.samples = *kind; };
+    const SampleKind own = std::exchange(built->scene.samples, SampleKind::kIndependent);
+    const std::unique_ptr<const SampleKind, decltype(put_back)> guard(&own, put_back);
+    return render_scene(built->scene, color, settings, progress);
   };
   return loaded;
 }
@@ -126,6 +132,7 @@ LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<c
   const auto lights = std::make_shared<const Lights>(make_lights(read_lights(options), up));
   LoadedSubject loaded;
   loaded.settings = read_run_settings(options);
+  loaded.film = size;
   const TrackerChoice choice = choose_tracker(*medium);
   loaded.automatic_tracker = choice.tracker;
   loaded.reason = choice.reason;

@@ -19,6 +19,7 @@ namespace freepath::program {
 struct LoadedSubject {
   Subject subject;
   RenderSettings settings;  ///< All but samples, time and methods.
+  PictureSize film;         ///< The whole picture's size, of which a scene may crop a part.
   /// Of bare volumes: their medium, for methods to be chosen by.
   std::shared_ptr<const Medium> medium;
   std::string automatic_tracker;  ///< What `auto` stands for here,

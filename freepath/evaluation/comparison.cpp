@@ -1,7 +1,6 @@
 #include "freepath/evaluation/comparison.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -80,55 +79,66 @@ class Experiment {
     configurations_ = tried_configurations(subject_, settings_);
     name_configurations();
     get_references();
-    pictures_.resize(configurations_.size());
-    snapshots_.resize(configurations_.size());
     for (int repeat = 0; repeat < settings_.repeats; ++repeat) {
       const std::size_t count = configurations_.size();
       for (std::size_t i = 0; i < count; ++i) {
         run_once((i + static_cast<std::size_t>(repeat)) % count, repeat);
       }
     }
-    report("errors", 1);
     evaluate();
     result_.seconds = clock_.seconds();
     return std::move(result_);
   }
 
  private:
-  struct Snapshot {
-    double seconds;
-    std::vector<float> means;
+  /// Errors of a film as it grows, and the time that finding them took.
+  struct Watch {
+    std::vector<ConvergencePoint> points;
+    double seconds = 0, cpu_seconds = 0;
+    uint32_t samples = 0;
   };
 
   void name_configurations();
   void get_references();
   void run_once(std::size_t which, int repeat);
   void evaluate();
-  void evaluate_run(std::size_t which, std::size_t repeat);
+  /// Takes in the errors of a run's picture, and the picture itself.
+  void take_picture(std::size_t which, ComparisonRun& run, PixelEstimates picture);
   void find_efficiencies();
-  /// The colours of a film that grows, when it has twice the samples that it had.
-  std::function<void(const Film&)> take_snapshots(std::vector<Snapshot>& snapshots,
-                                                  const Clock& clock) const;
+  /// Looks at a film whenever it has twice the samples that it had.
+  std::function<void(const Film&)> watcher(std::size_t which, Watch& watch,
+                                           const Clock& clock) const;
 
   void report(const std::string& step, double fraction) {
     if (progress_ && !progress_({step, fraction, clock_.seconds()})) {
       throw Interrupted("interrupted: nothing is written");
     }
   }
-  /// Tells of a rendering that does a part of the work.
-  ProgressFunction progress_of(const std::string& step, double begin, double part) {
-    return [this, step, begin, part](const RenderProgress& rendering) {
+  /// Tells of a rendering that does a part of the work and has a time to end.
+  ProgressFunction progress_of(const std::string& step, double begin, double part, double time) {
+    return [this, step, begin, part, time](const RenderProgress& rendering) {
       if (!progress_) return true;
-      const double done =
-          rendering.samples_total > 0 ? rendering.samples_done / rendering.samples_total : 0;
+      double done = time > 0 ? rendering.seconds / time : 0;
+      if (rendering.samples_total > 0) {
+        done = std::max(done, rendering.samples_done / rendering.samples_total);
+      }
       return progress_({step, begin + part * std::min(1.0, done), clock_.seconds()});
     };
   }
-  /// Share of the work that references take.
+  /// Share of the work that references take, by time or samples, whichever both are given in.
   double reference_share() const {
-    const double runs = settings_.time * static_cast<double>(configurations_.size());
-    const double reference = settings_.reference.file.empty() ? settings_.reference.time : 0;
-    return runs + reference > 0 ? reference / (runs + reference) : 0;
+    if (!settings_.reference.file.empty()) return 0;
+    const auto share = [&](double reference, double run) {
+      return reference / (reference + run * static_cast<double>(configurations_.size()));
+    };
+    if (settings_.time > 0 && settings_.reference.time > 0) {
+      return share(settings_.reference.time, settings_.time);
+    }
+    if (settings_.samples > 0 && settings_.reference.samples > 0) {
+      return share(settings_.reference.samples, settings_.samples);
+    }
+    constexpr double kGuess = 0.2;
+    return kGuess;
   }
 
   const Subject& subject_;
@@ -137,8 +147,6 @@ class Experiment {
   std::vector<Configuration> configurations_;
   Clock clock_;
   Comparison result_;
-  std::vector<std::vector<PixelEstimates>> pictures_;          // of each run
-  std::vector<std::vector<std::vector<Snapshot>>> snapshots_;  // of each run
 };
 
 void Experiment::name_configurations() {
@@ -191,8 +199,15 @@ void Experiment::get_references() {
       place = result_.references.size();
       Configuration standard;
       if (is_nearest) standard.interpolation = Interpolation::kNearest;
-      Reference reference = get_reference(subject_, settings_.reference, standard, settings_.render,
-                                          progress_of("reference", 0, share));
+      if (nearest && trilinear && !settings_.reference.file.empty()) {
+        fail(
+            "{}: one picture can't be the reference of nearest and of other interpolations, whose "
+            "fields differ",
+            settings_.reference.file);
+      }
+      Reference reference =
+          get_reference(subject_, settings_.reference, standard, settings_.render,
+                        progress_of("reference", 0, share, settings_.reference.time));
       if (reference.estimates.mean.empty()) throw Interrupted("interrupted: nothing is written");
       result_.references.push_back(std::move(reference));
     }
@@ -200,13 +215,19 @@ void Experiment::get_references() {
   }
 }
 
-std::function<void(const Film&)> Experiment::take_snapshots(std::vector<Snapshot>& snapshots,
-                                                            const Clock& clock) const {
-  return [&snapshots, &clock, last = uint32_t{0}](const Film& film) mutable {
+std::function<void(const Film&)> Experiment::watcher(std::size_t which, Watch& watch,
+                                                     const Clock& clock) const {
+  const PixelEstimates& reference = result_.reference(which).estimates;
+  return [&](const Film& film) {
     const uint32_t samples = film.sample_counts().fewest;
-    if (samples == 0 || samples < 2 * last) return;
-    last = samples;
-    snapshots.push_back({clock.seconds(), estimates_of(film).mean});
+    if (samples < std::max(1U, 2 * watch.samples)) return;
+    watch.samples = samples;
+    const double begin = clock.seconds();
+    const double cpu_begin = process_cpu_seconds();
+    const double mse = squared_error(colours_of(film), reference).mse;
+    watch.points.push_back({begin - watch.seconds, mse});
+    watch.seconds += clock.seconds() - begin;
+    watch.cpu_seconds += process_cpu_seconds() - cpu_begin;
   };
 }
 
@@ -216,7 +237,6 @@ void Experiment::run_once(std::size_t which, int repeat) {
   render.walk.seed = run_seed(settings_.seed, which, repeat);
   render.time_limit = settings_.time / settings_.repeats;
   render.samples = (settings_.samples + settings_.repeats - 1) / settings_.repeats;
-  snapshots_[which].emplace_back();
   const auto runs = static_cast<double>(configurations_.size() * settings_.repeats);
   const double done = static_cast<double>(repeat) * result_.configurations.size() +
                       static_cast<double>((which + result_.configurations.size() -
@@ -228,31 +248,27 @@ void Experiment::run_once(std::size_t which, int repeat) {
   const double begin = share + (1 - share) * done / runs;
   report(step, begin);
   const Clock clock;
-  render.on_pass = take_snapshots(snapshots_[which].back(), clock);
+  Watch watch;
+  render.on_pass = watcher(which, watch, clock);
   const double cpu_before = process_cpu_seconds();
   const RenderResult rendered =
-      subject_.render(render, progress_of(step, begin, (1 - share) / runs));
+      subject_.render(render, progress_of(step, begin, (1 - share) / runs, render.time_limit));
   ComparisonRun run;
-  run.cpu_seconds = process_cpu_seconds() - cpu_before;
+  run.cpu_seconds = process_cpu_seconds() - cpu_before - watch.cpu_seconds;
   if (rendered.interrupted) throw Interrupted("interrupted: nothing is written");
-  if (rendered.pixels_without_samples > 0) {
-    fail("{}: {} pixels have no sample after {:.1f} s: give more --time, or fewer --repeats",
-         result.name, rendered.pixels_without_samples, rendered.seconds);
-  }
-  run.seconds = rendered.seconds;
+  run.seconds = rendered.seconds - watch.seconds;
   run.samples = rendered.samples;
-  run.paths = rendered.paths;
+  run.camera_samples = uint64_t{rendered.samples} * subject_.width * subject_.height;
   run.overflows = rendered.overflows;
   run.free_paths = rendered.free_paths;
   run.shadow_rays = rendered.shadow_rays;
-  result.runs.push_back(run);
-  pictures_[which].push_back(estimates_of(rendered.film));
+  run.convergence = std::move(watch.points);
+  take_picture(which, run, estimates_of(rendered.film));
+  result.runs.push_back(std::move(run));
 }
 
-void Experiment::evaluate_run(std::size_t which, std::size_t repeat) {
+void Experiment::take_picture(std::size_t which, ComparisonRun& run, PixelEstimates picture) {
   ConfigurationResult& result = result_.configurations[which];
-  ComparisonRun& run = result.runs[repeat];
-  const PixelEstimates& picture = pictures_[which][repeat];
   const PixelEstimates& reference = result_.reference(which).estimates;
   run.error = squared_error(picture.mean, reference);
   for (std::size_t i = 0; i < picture.variance.size(); ++i) {
@@ -262,30 +278,25 @@ void Experiment::evaluate_run(std::size_t which, std::size_t repeat) {
       high_range_flip(reference.mean, picture.mean, picture.width, picture.height);
   run.flip = std::accumulate(differences.begin(), differences.end(), 0.0) /
              static_cast<double>(differences.size());
-  if (repeat == 0) result.flip = std::move(differences);
-  for (const Snapshot& snapshot : snapshots_[which][repeat]) {
-    run.convergence.push_back({snapshot.seconds, squared_error(snapshot.means, reference).mse});
+  if (result.runs.empty()) {
+    result.flip = std::move(differences);
+    result.together = picture;
+    result.first = std::move(picture);
+  } else {
+    result.together = merged({&result.together, &picture});
   }
 }
 
 void Experiment::evaluate() {
-  const std::size_t configurations = result_.configurations.size();
-  const auto repeats = static_cast<std::size_t>(settings_.repeats);
-  tbb::parallel_for(std::size_t{0}, configurations * repeats,
-                    [&](std::size_t i) { evaluate_run(i / repeats, i % repeats); });
-  for (std::size_t which = 0; which < configurations; ++which) {
+  for (std::size_t which = 0; which < result_.configurations.size(); ++which) {
     ConfigurationResult& result = result_.configurations[which];
-    std::vector<const PixelEstimates*> parts;
-    for (const PixelEstimates& picture : pictures_[which]) parts.push_back(&picture);
-    result.together = merged(parts);
-    result.first = std::move(pictures_[which].front());
     result.bias = test_bias(result.together, result_.reference(which).estimates);
     result_.tests += result.bias.tests();
   }
+  result_.level = settings_.level;
   result_.threshold = family_wise_threshold(settings_.level, result_.tests);
   for (ConfigurationResult& result : result_.configurations) {
-    // Written so that a NaN fails.
-    result.passes_bias_test = result.bias.worst() <= result_.threshold;
+    result.verdict = result.bias.verdict(result_.threshold);
   }
   find_efficiencies();
 }
@@ -308,6 +319,12 @@ void Experiment::find_efficiencies() {
 
 }  // namespace
 
+bool ConfigurationResult::is_trusted() const {
+  const bool overflows = std::any_of(runs.begin(), runs.end(),
+                                     [](const ComparisonRun& run) { return run.overflows > 0; });
+  return verdict == BiasVerdict::kPasses && !is_biased && !overflows;
+}
+
 Interval ConfigurationResult::over_runs(
     const std::function<double(const ComparisonRun&)>& figure) const {
   std::vector<double> values;
@@ -321,6 +338,10 @@ Comparison compare(const Subject& subject, const ComparisonSettings& settings,
   if (settings.repeats < 1) fail("nothing to compare: {} repeats", settings.repeats);
   if (settings.time <= 0 && settings.samples == 0) {
     fail("nothing to compare: neither a time nor samples are given");
+  }
+  if (settings.samples > 0 && settings.samples < 2U * settings.repeats) {
+    fail("{} samples for {} repeats: each needs two at least, to know its variance",
+         settings.samples, settings.repeats);
   }
   return Experiment(subject, settings, progress).run();
 }

@@ -41,10 +41,11 @@ struct ConvergencePoint {
 
 /// What one run did.
 struct ComparisonRun {
-  double seconds = 0;      ///< Of the wall's clock.
-  double cpu_seconds = 0;  ///< Of all threads of the process.
-  uint32_t samples = 0;    ///< Of the pixel that has the fewest.
-  uint64_t paths = 0, overflows = 0;
+  double seconds = 0;           ///< Of the wall's clock.
+  double cpu_seconds = 0;       ///< Of all threads of the process.
+  uint32_t samples = 0;         ///< Of the pixel that has the fewest.
+  uint64_t camera_samples = 0;  ///< Of all pixels; one is what an estimate of all channels takes.
+  uint64_t overflows = 0;       ///< RenderResult::overflows
   WalkStatistics free_paths, shadow_rays;
   SquaredError error;
   std::array<double, 3> variance = {};  ///< Of a pixel, over all pixels, by its own samples.
@@ -62,11 +63,12 @@ struct ConfigurationResult {
   PixelEstimates together;  ///< Of all runs.
   std::vector<float> flip;  ///< Of the first run, of each pixel.
   BiasTest bias;            ///< Of all runs together.
-  /// Whether every |z| is within Comparison::threshold.
-  bool passes_bias_test = false;
+  BiasVerdict verdict = BiasVerdict::kPasses;
   /// 1/(MSE · CPU seconds) over that of the baseline in the same round, where both can be told.
   std::optional<Interval> efficiency;
 
+  /// Whether its pictures are unbiased as far as anyone can tell.
+  bool is_trusted() const;
   /// Of a figure over the runs.
   Interval over_runs(const std::function<double(const ComparisonRun&)>& figure) const;
 };
@@ -77,6 +79,7 @@ struct Comparison {
   std::size_t baseline = 0;  ///< Which one efficiencies are relative to: the first with `delta`.
   std::vector<Reference> references;      ///< One for each field that interpolations make.
   std::vector<std::size_t> reference_of;  ///< Of each configuration.
+  double level = 0;                       ///< ComparisonSettings::level
   double threshold = 0;                   ///< Largest |z| that chance explains.
   std::size_t tests = 0;                  ///< How many it is for.
   double seconds = 0;                     ///< In all, with the reference.

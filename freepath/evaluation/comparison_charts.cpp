@@ -14,13 +14,20 @@ ChartBar bar_of(const std::string& name, const Interval& interval) {
   return {.name = name, .value = interval.value, .low = interval.low, .high = interval.high};
 }
 
-/// The best of bars stands out.
-void mark_best(std::vector<ChartBar>& bars, bool larger_is_better) {
-  const auto better = [&](const ChartBar& a, const ChartBar& b) {
-    return larger_is_better ? a.value < b.value : a.value > b.value;
-  };
-  const auto best = std::max_element(bars.begin(), bars.end(), better);
-  if (best != bars.end()) best->is_best = true;
+/// The best bar of those methods that are to be trusted stands out.
+void mark_best(const Comparison& comparison, std::vector<ChartBar>& bars, bool larger_is_better) {
+  ChartBar* best = nullptr;
+  for (ChartBar& bar : bars) {
+    const auto& all = comparison.configurations;
+    const auto result = std::find_if(all.begin(), all.end(), [&](const ConfigurationResult& one) {
+      return one.name == bar.name;
+    });
+    if (!result->is_trusted()) continue;
+    const bool better =
+        best == nullptr || (larger_is_better ? bar.value > best->value : bar.value < best->value);
+    if (better) best = &bar;
+  }
+  if (best != nullptr) best->is_best = true;
 }
 
 NamedFigure efficiency_chart(const Comparison& comparison) {
@@ -33,7 +40,7 @@ NamedFigure efficiency_chart(const Comparison& comparison) {
   for (const ConfigurationResult& result : comparison.configurations) {
     if (result.efficiency) chart.bars.push_back(bar_of(result.name, *result.efficiency));
   }
-  mark_best(chart.bars, true);
+  mark_best(comparison, chart.bars, true);
   return {"efficiency.svg", "How much sooner a method reaches the same error.", to_svg(chart)};
 }
 
@@ -46,7 +53,7 @@ NamedFigure bars_of(const Comparison& comparison, std::string_view key, const st
   for (const ConfigurationResult& result : comparison.configurations) {
     chart.bars.push_back(bar_of(result.name, result.over_runs(figure->of_run)));
   }
-  mark_best(chart.bars, false);
+  mark_best(comparison, chart.bars, false);
   return {std::string(key) + ".svg", caption, to_svg(chart)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "freepath/base/version.h"
@@ -26,7 +27,7 @@ Json to_json(const ComparisonRun& run) {
     json[std::string(figure.key)] = figure.of_run(run);
   }
   json["channel_mse"] = run.error.channel_mse;
-  json["paths"] = run.paths;
+  json["camera_samples"] = run.camera_samples;
   json["overflows"] = run.overflows;
   json["convergence"] = Json::array();
   for (const ConvergencePoint& point : run.convergence) {
@@ -46,10 +47,13 @@ Json to_json(const Comparison& comparison, std::size_t which) {
   for (const ComparisonFigure& figure : comparison_figures()) {
     json[std::string(figure.key)] = to_json(result.over_runs(figure.of_run));
   }
-  json["bias_test"] = {
-      {"passes", result.passes_bias_test},          {"z", result.bias.z},
-      {"worst_block_z", result.bias.worst_block()}, {"block_z", result.bias.block_z},
-      {"blocks_across", result.bias.blocks_across}, {"blocks_down", result.bias.blocks_down}};
+  json["bias_test"] = {{"verdict", to_string(result.verdict)},
+                       {"passes", result.verdict == BiasVerdict::kPasses},
+                       {"z", result.bias.z},
+                       {"worst_block_z", result.bias.worst_block()},
+                       {"block_z", result.bias.block_z},
+                       {"blocks_across", result.bias.blocks_across},
+                       {"blocks_down", result.bias.blocks_down}};
   json["reference"] = comparison.reference_of[which];
   json["runs"] = Json::array();
   for (const ComparisonRun& run : result.runs) json["runs"].push_back(to_json(run));
@@ -66,9 +70,9 @@ std::string quoted(const std::string& text) {
 
 std::string csv_of(const Interval& interval) {
   const auto end = [](const std::optional<double>& value) {
-    return value ? fmt::format("{:.8g}", *value) : std::string();
+    return value && std::isfinite(*value) ? fmt::format("{:.8g}", *value) : std::string();
   };
-  return fmt::format(",{:.8g},{},{}", interval.value, end(interval.low), end(interval.high));
+  return fmt::format(",{},{},{}", end(interval.value), end(interval.low), end(interval.high));
 }
 
 }  // namespace
@@ -94,7 +98,7 @@ std::string json_of(const Comparison& comparison, const ReportContext& context) 
   for (std::size_t i = 0; i < comparison.configurations.size(); ++i) {
     json["configurations"].push_back(to_json(comparison, i));
   }
-  return json.dump(1) + "\n";
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string csv_of(const Comparison& comparison) {
@@ -103,7 +107,7 @@ std::string csv_of(const Comparison& comparison) {
   for (const ComparisonFigure& figure : comparison_figures()) {
     text += fmt::format(",{0},{0}_low,{0}_high", figure.key);
   }
-  text += ",z_r,z_g,z_b,worst_block_z,passes_bias_test\n";
+  text += ",z_r,z_g,z_b,worst_block_z,bias_test\n";
   for (const ConfigurationResult& result : comparison.configurations) {
     text += quoted(result.name) + "," + quoted(result.configuration.tracker) + "," +
             quoted(result.configuration.transmittance) + "," +
@@ -113,8 +117,7 @@ std::string csv_of(const Comparison& comparison) {
       text += csv_of(result.over_runs(figure.of_run));
     }
     text += fmt::format(",{:.4g},{:.4g},{:.4g},{:.4g},{}\n", result.bias.z[0], result.bias.z[1],
-                        result.bias.z[2], result.bias.worst_block(),
-                        result.passes_bias_test ? "yes" : "no");
+                        result.bias.z[2], result.bias.worst_block(), to_string(result.verdict));
   }
   return text;
 }

@@ -15,10 +15,11 @@ WalkStatistics both(const ComparisonRun& run) {
   return sum;
 }
 
-/// A count over the paths of a run.
+/// A count over the samples of a run: with a tracker that takes a path for each channel, all three
+/// paths of a sample count as one.
 std::function<double(const ComparisonRun&)> each_path(uint64_t WalkStatistics::*count) {
   return [count](const ComparisonRun& run) {
-    const uint64_t paths = std::max<uint64_t>(run.paths, 1);
+    const uint64_t paths = std::max<uint64_t>(run.camera_samples, 1);
     return static_cast<double>(both(run).*count) / static_cast<double>(paths);
   };
 }
@@ -51,7 +52,8 @@ const std::vector<ComparisonFigure>& comparison_figures() {
        [](const ComparisonRun& run) { return run.seconds; }},
       {"cpu_seconds", "CPU [s]", "time that all threads worked in one run",
        [](const ComparisonRun& run) { return run.cpu_seconds; }},
-      {"lookups_per_path", "look-ups", "densities read in a path with its shadow rays",
+      {"lookups_per_path", "look-ups",
+       "densities read for a path of all channels, with its shadow rays",
        each_path(&WalkStatistics::lookups)},
       {"tentative_collisions_per_path", "tentative", "tentative collisions in a path",
        each_path(&WalkStatistics::tentative_collisions)},

@@ -1,5 +1,7 @@
 #include "freepath/evaluation/flip.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -106,7 +108,7 @@ Plane filter(const Plane& plane, const Extent& size, const Kernel& rows, const K
   const auto pass = [&](const Plane& from, const Kernel& kernel, bool along_rows) {
     const int radius = static_cast<int>(kernel.size() / 2);
     Plane to(from.size());
-    for (int y = 0; y < size.height; ++y) {
+    tbb::parallel_for(0, size.height, [&](int y) {
       for (int x = 0; x < size.width; ++x) {
         double sum = 0;
         for (int tap = -radius; tap <= radius; ++tap) {
@@ -116,7 +118,7 @@ Plane filter(const Plane& plane, const Extent& size, const Kernel& rows, const K
         }
         to[static_cast<std::size_t>(y) * size.width + x] = static_cast<float>(sum);
       }
-    }
+    });
     return to;
   };
   return pass(pass(plane, rows, true), columns, false);

@@ -123,7 +123,7 @@ class Measurement {
       seen += weight * setting_.scattered(x, channel);
     }
     tally.radiance.add(seen);
-    if (flights.event[i] == Event::kAbsorb || weight == 0) return;
+    if (flights.event[i] == Event::kAbsorb || weight == 0 || std::isnan(weight)) return;
     ++tally.weights[weight_bin(weight)];
     tally.negative += weight < 0 ? 1 : 0;
   }

@@ -73,6 +73,11 @@ PixelEstimates estimates_of(const Image& image, const std::string& name, bool& v
     estimates.variance.assign(estimates.mean.size(), 0.0F);
   }
   check_finite(estimates.variance, image.width, name);
+  for (std::size_t i = 0; i < estimates.variance.size(); ++i) {
+    if (estimates.variance[i] >= 0) continue;
+    fail("{}: the variance of pixel ({}, {}) is negative", name, i / 3 % image.width,
+         i / 3 / image.width);
+  }
   estimates.samples = copy_channel(image, "samples");
   if (estimates.samples.empty()) estimates.samples.assign(image.pixel_count(), 1.0F);
   estimates.lookups = copy_channel(image, "lookups");
@@ -83,6 +88,11 @@ PixelEstimates estimates_of(const Film& film) {
   bool known = false;
   return estimates_of(film.to_image({Layer::kVariance, Layer::kSamples, Layer::kLookups}),
                       "the picture", known);
+}
+
+std::vector<float> colours_of(const Film& film) {
+  const Image image = film.to_image(LayerSet{});
+  return copy_channels(image, colour_channels(image, "the picture"));
 }
 
 Image to_image(const PixelEstimates& estimates) {

@@ -22,11 +22,13 @@ struct PixelEstimates {
 };
 
 PixelEstimates estimates_of(const Film& film);
+/// Its R, G and B alone, three a pixel.
+std::vector<float> colours_of(const Film& film);
 
 /// Of a picture in a file: its variances stand in variance.R, G and B, or follow from the halves
 /// A.R, ... and B.R, ...
 /// @param name of the file, for messages
-/// @throws Error where it has no colour or values that are not finite
+/// @throws Error where it has no colour, values that are not finite or variances below 0
 /// @param variance_known tells whether it has either; where not, variances are 0
 PixelEstimates estimates_of(const Image& image, const std::string& name, bool& variance_known);
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "freepath/base/error.h"
+#include "freepath/base/threads.h"
 #include "freepath/evaluation/pixel_estimates.h"
 #include "freepath/evaluation/process_time.h"
 #include "freepath/evaluation/run_seed.h"
@@ -38,7 +39,7 @@ RenderSettings settings_of(const PilotSettings& settings, const PilotCandidate& 
 /// Sums over the rounds of a candidate.
 struct Tally {
   double cpu_seconds = 0;
-  uint64_t paths = 0, lookups = 0;
+  uint64_t samples = 0, lookups = 0, overflows = 0;
   std::vector<double> costs;
 };
 
@@ -51,10 +52,14 @@ bool run_round(const Subject& subject, const PilotSettings& settings, uint64_t s
     const RenderResult rendered =
         subject.render(settings_of(settings, result.candidate, seed), progress);
     if (rendered.interrupted) return false;
-    tally.cpu_seconds += process_cpu_seconds() - cpu_before;
-    tally.paths += rendered.paths;
+    // Of a small picture's passes some threads go without work at the end, of a large one's not.
+    const double cpu_seconds = process_cpu_seconds() - cpu_before;
+    const int threads = Threads(settings.render.threads).count();
+    tally.cpu_seconds += cpu_seconds;
+    tally.samples += uint64_t{rendered.samples} * rendered.film.width() * rendered.film.height();
+    tally.overflows += rendered.overflows;
     tally.lookups += rendered.statistics().lookups;
-    tally.costs.push_back(rendered.seconds * squared_noise(estimates_of(rendered.film)));
+    tally.costs.push_back(cpu_seconds / threads * squared_noise(estimates_of(rendered.film)));
   } catch (const Error& error) {
     result.refusal = error.what();
   }
@@ -102,9 +107,10 @@ std::vector<PilotResult> run_pilots(const Subject& subject,
     }
   }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto paths = static_cast<double>(std::max<uint64_t>(tallies[i].paths, 1));
+    const auto paths = static_cast<double>(std::max<uint64_t>(tallies[i].samples, 1));
     results[i].lookups_per_path = static_cast<double>(tallies[i].lookups) / paths;
     results[i].nanoseconds_per_path = 1e9 * tallies[i].cpu_seconds / paths;
+    results[i].overflows = tallies[i].overflows;
     results[i].cost = geometric_interval(tallies[i].costs);
   }
   return results;
@@ -113,7 +119,7 @@ std::vector<PilotResult> run_pilots(const Subject& subject,
 std::optional<std::size_t> cheapest(const std::vector<PilotResult>& results) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (results[i].is_biased || !results[i].cost) continue;
+    if (results[i].is_biased || results[i].overflows > 0 || !results[i].cost) continue;
     if (!best || results[i].cost->value < results[*best].cost->value) best = i;
   }
   return best;

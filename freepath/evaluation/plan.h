@@ -34,8 +34,9 @@ struct PilotResult {
   bool is_biased = false;
   double lookups_per_path = 0;      ///< With those of shadow rays.
   double nanoseconds_per_path = 0;  ///< CPU time.
-  /// Time · noise², which stays the same as an unbiased picture goes on [s]: time of the wall's
-  /// clock; noise is the standard error of a pixel, root of the mean square over pixels and
+  uint64_t overflows = 0;           ///< RenderResult::overflows
+  /// Time · noise², which stays the same as an unbiased picture goes on [s]: CPU time
+  /// over threads; noise is the standard error of a pixel, root of the mean square over pixels and
   /// channels, over the mean of the picture. Nothing where the pilot saw no noise.
   std::optional<Interval> cost;
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -27,6 +28,12 @@ Reference read_reference(const std::string& file, const Subject& subject) {
          image.width, image.height, subject.width, subject.height, image.width, image.height);
   }
   reference.estimates = estimates_of(image, file, reference.variance_known);
+  const auto& samples = reference.estimates.samples;
+  const auto without = std::count(samples.begin(), samples.end(), 0.0F);
+  if (without > 0) {
+    fail("{}: {} pixels of the reference have no sample; render it again, with more time", file,
+         without);
+  }
   reference.origin = file;
   if (!reference.variance_known) {
     reference.origin += ", taken for exact: it has neither variances nor halves";
@@ -40,6 +47,10 @@ std::string key_of(const Subject& subject, const ReferencePlan& plan,
   const bool nearest = configuration.interpolation == Interpolation::kNearest;
   ContentDigest digest;
   digest.add(fmt::format("freepath {}", version()));
+  // Another build may compute another picture.
+  constexpr const char* kThisProgram = "/proc/self/exe";
+  std::error_code ignored;
+  if (fs::exists(kThisProgram, ignored)) digest.add_file(kThisProgram);
   digest.add(subject.digest);
   digest.add(fmt::format("{}x{}", subject.width, subject.height));
   digest.add(nearest ? "nearest" : "trilinear");
@@ -62,10 +73,6 @@ Reference make_reference(const Subject& subject, const ReferencePlan& plan,
   const auto& render = subject.render_reference ? subject.render_reference : subject.render;
   const RenderResult result = render(settings, progress);
   if (result.interrupted) return {};
-  if (result.pixels_without_samples > 0) {
-    fail("the reference has {} pixels without a sample after {:.1f} s; give it more time",
-         result.pixels_without_samples, result.seconds);
-  }
   Reference reference{.estimates = estimates_of(result.film)};
   reference.origin =
       fmt::format("made with {} and {}, {} samples per pixel in {:.1f} s", configuration.tracker,
@@ -96,18 +103,25 @@ Reference get_reference(const Subject& subject, const ReferencePlan& plan,
     cached = (fs::path(plan.cache) / (key_of(subject, plan, configuration) + ".exr")).string();
     std::error_code ignored;
     if (fs::exists(cached, ignored)) {
-      Reference reference = read_reference(cached, subject);
-      reference.origin = "found in " + cached;
-      return reference;
+      try {
+        Reference reference = read_reference(cached, subject);
+        reference.origin = "found in " + cached;
+        return reference;
+      } catch (const Error&) {
+        // Damaged: it is made again, and replaced.
+      }
     }
   }
   Reference reference = make_reference(subject, plan, configuration, std::move(settings), progress);
   if (!cached.empty() && !reference.estimates.mean.empty()) {
-    std::error_code error;
-    fs::create_directories(plan.cache, error);
-    if (error) fail("{}: can't make the folder for references: {}", plan.cache, error.message());
-    write_exr(cached, to_image(reference.estimates));
-    reference.origin += ", kept in " + cached;
+    try {
+      std::error_code ignored;
+      fs::create_directories(plan.cache, ignored);
+      write_exr(cached, to_image(reference.estimates));
+      reference.origin += ", kept in " + cached;
+    } catch (const Error& error) {
+      reference.origin += fmt::format(", not kept: {}", error.what());
+    }
   }
   return reference;
 }

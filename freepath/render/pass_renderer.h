@@ -67,8 +67,10 @@ class PassRenderer {
       samples_done_ += samples;
       if (settings_.on_pass) settings_.on_pass(film_);
       const double now = seconds_since(start_);
-      if (timed && now >= settings_.time_limit) break;
+      const bool needs_more = settings_.whole_passes && samples_done_ < 2;
+      if (timed && now >= settings_.time_limit && !needs_more) break;
       samples = next_pass(samples, (now - before) / samples, timed, now);
+      if (needs_more) samples = std::max(samples, 1U);
       if (samples == 0) break;
     }
     report(seconds_since(start_), true);

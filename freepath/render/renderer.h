@@ -16,8 +16,8 @@ struct RenderSettings {
   /// after which each pixel has one sample, where it would take more than twice the limit and a
   /// second, later ones a few percent past the limit.
   double time_limit = 0;
-  /// Never breaks a pass off for want of time: all pixels have as many samples, and the time is
-  /// that of the pass which ends next to it.
+  /// Never breaks a pass off for want of time: all pixels have as many samples, two at least, so
+  /// that their variance is known. The time is that of the pass which ends next to it.
   bool whole_passes = false;
   int threads = 0;  ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;

@@ -30,8 +30,13 @@ std::vector<Sphere> place_puffs(uint64_t seed) {
   constexpr float kRadius = 24;
   constexpr float kReach = kHalf - kRadius - 1;
   Sequence random(seed + 0x70756666U);
+  constexpr int kTries = 100;  // before all begin anew: the first may leave no room
   std::vector<Sphere> puffs;
-  while (puffs.size() < kPuffs) {
+  for (int tries = 0; puffs.size() < kPuffs; ++tries) {
+    if (tries == kTries) {
+      puffs.clear();
+      tries = 0;
+    }
     const Vec3f centre(random.uniform(-kReach, kReach), kHalf + random.uniform(-kReach, kReach),
                        random.uniform(-kReach, kReach));
     const bool apart = std::all_of(puffs.begin(), puffs.end(), [&](const Sphere& puff) {

@@ -22,9 +22,10 @@ class CompareCommandTest : public ProgramTest {
   /// A short comparison; options are added at the end.
   Outcome compare(const std::string& options) const {
     const bool says_samples = options.find("--spp") != std::string::npos;
-    return run(
-        "compare ball.vdb -o report --size 48x32 --reference-spp 32 --cache kept --environment 1 " +
-        std::string(says_samples ? "" : "--spp 16 --repeats 2 ") + options);
+    const bool makes_reference = options.find("--reference ") == std::string::npos;
+    return run("compare ball.vdb -o report --size 48x32 --environment 1 " +
+               std::string(makes_reference ? "--reference-spp 32 --cache kept " : "") +
+               std::string(says_samples ? "" : "--spp 16 --repeats 2 ") + options);
   }
   nlohmann::json report() const {
     std::ifstream file(path("report/compare.json"));
@@ -60,6 +61,16 @@ TEST_F(CompareCommandTest, FindsItsReferenceAgainWhileThePictureIsTheSame) {
   EXPECT_EQ(origin("--seed 5 --threads 1 --super-voxel 8"), "found");
   EXPECT_EQ(origin("--albedo 0.5"), "made ");
   EXPECT_EQ(origin("--fov 30"), "made ");
+  write_text(path("table.txt"), "0 1\n180 1\n");
+  EXPECT_EQ(origin("--phase tabulated:table.txt"), "made ");
+  EXPECT_EQ(origin("--phase tabulated:table.txt"), "found");
+  write_text(path("table.txt"), "0 2\n180 1\n");
+  EXPECT_EQ(origin("--phase tabulated:table.txt"), "made ");
+  // A damaged one is made again.
+  for (const auto& entry : std::filesystem::directory_iterator(path("kept"))) {
+    write_text(entry.path(), "damaged");
+  }
+  EXPECT_EQ(origin(""), "made ");
   write_cube(path("ball.vdb"), [](const Vec3i& voxel) { return 0.5F * ball(voxel); });
   EXPECT_EQ(origin(""), "made ");
 }
@@ -103,6 +114,8 @@ TEST_F(CompareCommandTest, SaysWhatIsWrong) {
   expect_error("--trackers delta --interpolation cubic", "cubic");
   expect_error("--trackers ray-marching --interpolation stochastic", "ray-marching");
   expect_error("--trackers delta --spp 4 --repeats 0", "--repeats");
+  expect_error("--trackers delta --reference r.exr --cache kept", "--cache is for references");
+  expect_error("--trackers delta --spp 3 --repeats 2", "each needs two");
   write_text(path("taken"), "a file");
   const Outcome taken = run("compare ball.vdb -o taken --spp 1");
   EXPECT_NE(taken.messages.find("is not a folder"), std::string::npos) << taken;

@@ -44,7 +44,7 @@ TEST(Pilots, ForeseeLookupsAndNoise) {
   settings.samples = 256;
   const RenderResult rendered = subject.render(settings, {});
   const double lookups =
-      static_cast<double>(rendered.statistics().lookups) / static_cast<double>(rendered.paths);
+      static_cast<double>(rendered.statistics().lookups) / (256.0 * subject.width * subject.height);
   EXPECT_NEAR(results[0].lookups_per_path / lookups, 1, 0.03);
   EXPECT_LT(results[1].lookups_per_path, results[0].lookups_per_path);
   // Noise of that rendering, and the time foreseen to it. Times are the machine's: a factor of 4

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 #include <string>
 
@@ -100,11 +101,30 @@ TEST_P(Procedural, ResolutionsOutOfRangeAreRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Procedural,
-                         testing::Values(Kind{"cloud", generate_cloud, 0.2},
-                                         Kind{"smoke", generate_smoke, 0.04},
-                                         Kind{"fireball", generate_fireball, 0.2}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, Procedural,
+    testing::Values(Kind{"cloud", generate_cloud, 0.2}, Kind{"smoke", generate_smoke, 0.04},
+                    Kind{"fireball", generate_fireball, 0.2}, Kind{"fog", generate_fog, 0.9},
+                    Kind{"noise", generate_noise, 0.4}, Kind{"puffs", generate_puffs, 0.04}),
+    [](const auto& info) { return info.param.name; });
+
+// The same function of place: coarse voxels hold what fine ones do there.
+TEST(Puffs, AreTheSameAtAnyResolution) {
+  const auto mass = [](int resolution) {
+    const auto fields = generate_puffs({.resolution = resolution, .seed = 0, .progress = {}});
+    double sum = 0;
+    for (const float value : fields[0].voxels.voxels()) sum += value;
+    return sum / std::pow(resolution, 3);
+  };
+  EXPECT_NEAR(mass(64) / mass(160), 1, 0.02);
+}
+
+// The first puff may stand where it leaves no room for another.
+TEST(Puffs, FindTheirPlacesWhateverTheSeed) {
+  for (const uint64_t seed : {71, 92, 158, 412, 414}) {
+    EXPECT_EQ(generate_puffs({.resolution = 16, .seed = seed, .progress = {}}).size(), 1U);
+  }
+}
 
 TEST(Fireball, HasATemperatureWhereverThereIsDensity) {
   const auto fields = generate_fireball({.resolution = 48, .seed = 2, .progress = {}});

@@ -189,6 +189,22 @@ PhaseFunction parse_phase_function(std::string_view text, const std::filesystem:
   return PhaseFunction::mixture(parts);
 }
 
+std::vector<std::filesystem::path> phase_function_files(std::string_view text,
+                                                        const std::filesystem::path& folder) {
+  constexpr std::string_view kTabulated = "tabulated:";
+  std::vector<std::filesystem::path> files;
+  text = trimmed(text);
+  while (!text.empty()) {
+    const std::size_t end = end_of_part(text);
+    std::string_view part = trimmed(text.substr(0, end));
+    text = trimmed(text.substr(std::min(end + 1, text.size())));
+    if (const auto weighted = leading_weight(part)) part = weighted->rest;
+    if (part.substr(0, kTabulated.size()) != kTabulated) continue;
+    files.push_back(folder / trimmed(part.substr(kTabulated.size())));
+  }
+  return files;
+}
+
 PhaseFunction read_phase_table(std::istream& input, std::string_view name) {
   std::vector<PhaseTablePoint> points;
   std::vector<std::size_t> lines;  // of the points

@@ -5,6 +5,7 @@
 #include <istream>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "freepath/media/phase/phase_function.h"
 
@@ -26,6 +27,10 @@ std::span<const std::string_view> phase_function_names();
 /// @param folder what the name of a table's file is relative to
 /// @throws Error that says what is wrong and what would be right
 PhaseFunction parse_phase_function(std::string_view text, const std::filesystem::path& folder = {});
+
+/// The files that such a text names.
+std::vector<std::filesystem::path> phase_function_files(std::string_view text,
+                                                        const std::filesystem::path& folder = {});
 
 /// A tabulated phase function from lines "angle value": the angle between the directions of travel
 /// before and after [degrees], which rises from 0 to 180, and a value on any scale. What follows a

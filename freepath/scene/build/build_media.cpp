@@ -106,8 +106,10 @@ class MediumReader {
         fail_at(list_.location_of("phase"), "give a medium 'phase' or 'g', not both");
       }
       return at_location(list_.location_of("phase"), [&] {
-        return parse_phase_function(
-            text, std::filesystem::path(*list_.location_of("phase").file).parent_path());
+        const auto folder = std::filesystem::path(*list_.location_of("phase").file).parent_path();
+        PhaseFunction phase = parse_phase_function(text, folder);
+        for (const auto& file : phase_function_files(text, folder)) context_.files.push_back(file);
+        return phase;
       });
     }
     const double g = list_.get_float("g", 0);

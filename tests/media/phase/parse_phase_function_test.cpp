@@ -110,5 +110,13 @@ TEST(ParsePhaseFunction, AllowsForTheRoundingOfWeights) {
   EXPECT_NE(message("0.333*rayleigh+0.666*isotropic"), "no error");
 }
 
+TEST(PhaseFunctionFiles, AreThoseOfTables) {
+  using Paths = std::vector<std::filesystem::path>;
+  EXPECT_EQ(phase_function_files("rayleigh"), Paths{});
+  EXPECT_EQ(phase_function_files("tabulated:a.txt"), Paths{"a.txt"});
+  EXPECT_EQ(phase_function_files("0.5*tabulated:a.txt + 0.25*rayleigh+0.25*tabulated:b+c.txt", "f"),
+            (Paths{"f/a.txt", "f/b+c.txt"}));
+}
+
 }  // namespace
 }  // namespace freepath
