@@ -25,7 +25,7 @@ constexpr const char* kFooter =
   fireball  an explosion; fields density, 0 to 1, and temperature, 300 to 3000 K
   fog       a bank that is dense everywhere, 0.55 to 1; field density
   noise     a ball of voxels that have nothing to do with each other; field density, 0 to 1
-  puffs     round puffs far apart, the same at any resolution; field density, 0 to 1
+  puffs     two round puffs far apart, the same at any resolution; field density, 0 to 1
 
 The longest side is 100 units of the world, up is +y, the volume stands on y = 0. The same seed and
 resolution give the same file on any number of threads.

@@ -33,7 +33,7 @@ std::vector<Field> generate_fog(const ProceduralOptions& options);
 /// frequency that a grid holds. Field "density".
 std::vector<Field> generate_noise(const ProceduralOptions& options);
 
-/// Round puffs, far apart: the same function of place at any resolution, most of it 0. Field
+/// Two round puffs, far apart: the same function of place at any resolution, most of it 0. Field
 /// "density".
 std::vector<Field> generate_puffs(const ProceduralOptions& options);
 

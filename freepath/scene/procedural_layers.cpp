@@ -24,27 +24,14 @@ float distance_to(const Vec3f& point, const Vec3f& centre) {
   return std::sqrt((point - centre).length2());
 }
 
-/// Places for puffs that do not overlap, whatever the seed.
+/// Two puffs in opposite corners of the cube; the seed chooses which.
 std::vector<Sphere> place_puffs(uint64_t seed) {
-  constexpr int kPuffs = 2;
   constexpr float kRadius = 24;
-  constexpr float kReach = kHalf - kRadius - 1;
-  Sequence random(seed + 0x70756666U);
-  constexpr int kTries = 100;  // before all begin anew: the first may leave no room
-  std::vector<Sphere> puffs;
-  for (int tries = 0; puffs.size() < kPuffs; ++tries) {
-    if (tries == kTries) {
-      puffs.clear();
-      tries = 0;
-    }
-    const Vec3f centre(random.uniform(-kReach, kReach), kHalf + random.uniform(-kReach, kReach),
-                       random.uniform(-kReach, kReach));
-    const bool apart = std::all_of(puffs.begin(), puffs.end(), [&](const Sphere& puff) {
-      return distance_to(centre, puff.centre) > 2.1F * kRadius;
-    });
-    if (apart) puffs.push_back({centre, kRadius});
-  }
-  return puffs;
+  constexpr float kReach = kHalf - kRadius;
+  const Vec3f corner((seed & 1) != 0 ? kReach : -kReach, -kReach,
+                     (seed & 2) != 0 ? kReach : -kReach);
+  const Vec3f middle(0, kHalf, 0);
+  return {{middle + corner, kRadius}, {middle - corner, kRadius}};
 }
 
 }  // namespace

@@ -228,7 +228,7 @@ TEST_F(ReferenceTest, WithoutVarianceIsToldOf) {
   }
   write_exr(file, colour);
   ComparisonSettings settings = settings_for({"delta"});
-  settings.samples = 4;
+  settings.samples = 8;
   settings.reference.file = file;
   const Comparison comparison = compare(small_subject(), settings);
   EXPECT_FALSE(comparison.references[0].variance_known);

@@ -119,13 +119,6 @@ TEST(Puffs, AreTheSameAtAnyResolution) {
   EXPECT_NEAR(mass(64) / mass(160), 1, 0.02);
 }
 
-// The first puff may stand where it leaves no room for another.
-TEST(Puffs, FindTheirPlacesWhateverTheSeed) {
-  for (const uint64_t seed : {71, 92, 158, 412, 414}) {
-    EXPECT_EQ(generate_puffs({.resolution = 16, .seed = seed, .progress = {}}).size(), 1U);
-  }
-}
-
 TEST(Fireball, HasATemperatureWhereverThereIsDensity) {
   const auto fields = generate_fireball({.resolution = 48, .seed = 2, .progress = {}});
   ASSERT_EQ(fields.size(), 2U);
