@@ -225,7 +225,7 @@ std::function<void(const Film&)> Experiment::watcher(std::size_t which, Watch& w
     const double begin = clock.seconds();
     const double cpu_begin = process_cpu_seconds();
     const double mse = squared_error(colours_of(film), reference).mse;
-    watch.points.push_back({begin - watch.seconds, mse});
+    watch.points.push_back({samples, begin - watch.seconds, mse});
     watch.seconds += clock.seconds() - begin;
     watch.cpu_seconds += process_cpu_seconds() - cpu_begin;
   };

@@ -35,6 +35,7 @@ struct ComparisonSettings {
 
 /// Error of a run as it went on.
 struct ConvergencePoint {
+  uint32_t samples = 0;  ///< Of each pixel.
   double seconds = 0;
   double mse = 0;
 };

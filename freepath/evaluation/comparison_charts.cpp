@@ -1,7 +1,7 @@
 #include "freepath/evaluation/comparison_charts.h"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <map>
 
 #include "freepath/evaluation/comparison_figures.h"
@@ -57,9 +57,8 @@ NamedFigure bars_of(const Comparison& comparison, std::string_view key, const st
   return {std::string(key) + ".svg", caption, to_svg(chart)};
 }
 
-/// Points of all runs in bins of time, four to a decade.
+/// Points of all runs, together where they have about as many samples.
 ChartSeries convergence_of(const ConfigurationResult& result) {
-  constexpr double kBinsPerDecade = 4;
   struct Bin {
     std::vector<double> seconds, errors;
   };
@@ -67,7 +66,7 @@ ChartSeries convergence_of(const ConfigurationResult& result) {
   for (const ComparisonRun& run : result.runs) {
     for (const ConvergencePoint& point : run.convergence) {
       if (!(point.mse > 0) || !(point.seconds > 0)) continue;
-      Bin& bin = bins[static_cast<int>(std::floor(kBinsPerDecade * std::log10(point.seconds)))];
+      Bin& bin = bins[std::bit_width(point.samples)];
       bin.seconds.push_back(point.seconds);
       bin.errors.push_back(point.mse);
     }

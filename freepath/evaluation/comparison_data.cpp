@@ -31,7 +31,8 @@ Json to_json(const ComparisonRun& run) {
   json["overflows"] = run.overflows;
   json["convergence"] = Json::array();
   for (const ConvergencePoint& point : run.convergence) {
-    json["convergence"].push_back({{"seconds", point.seconds}, {"mse", point.mse}});
+    json["convergence"].push_back(
+        {{"samples", point.samples}, {"seconds", point.seconds}, {"mse", point.mse}});
   }
   return json;
 }

@@ -33,7 +33,7 @@ double nanoseconds_per_lookup(const ComparisonRun& run) {
 }  // namespace
 
 const std::vector<ComparisonFigure>& comparison_figures() {
-  static const std::vector<ComparisonFigure> figures = {
+  static const std::vector<ComparisonFigure> kFigures = {
       {"mse", "MSE", "mean squared error over pixels and channels, less the reference's variance",
        [](const ComparisonRun& run) { return run.error.mse; }},
       {"relative_mse", "rel. MSE", "the same, each pixel's over reference² + 0.01",
@@ -69,7 +69,7 @@ const std::vector<ComparisonFigure>& comparison_figures() {
          return double{std::max(run.free_paths.largest_weight, run.shadow_rays.largest_weight)};
        }},
   };
-  return figures;
+  return kFigures;
 }
 
 std::string number_text(double value, int digits) {

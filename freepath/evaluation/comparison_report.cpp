@@ -238,7 +238,7 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
   const ConfigurationResult& baseline = comparison.configurations[comparison.baseline];
   const std::optional<std::size_t> which = best_of(comparison);
   if (!which) {
-    findings.push_back(
+    findings.emplace_back(
         "Which method is the most efficient can't be told: none that is to be trusted has errors "
         "above the reference's noise.");
   } else if (*which == comparison.baseline) {
@@ -252,7 +252,8 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
     findings.push_back(fmt::format("{} is the most efficient: {}× {}{}.", best.name,
                                    number_text(gain.value, 3), baseline.name, range));
     if (gain.low && *gain.low < 1) {
-      findings.push_back("Its interval holds 1: more repeats would tell whether that is chance.");
+      findings.emplace_back(
+          "Its interval holds 1: more repeats would tell whether that is chance.");
     }
   }
   for (const ConfigurationResult& result : comparison.configurations) {
@@ -285,7 +286,7 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
   }
   for (const Reference& reference : comparison.references) {
     if (reference.variance_known) continue;
-    findings.push_back(
+    findings.emplace_back(
         "The reference's variance is not known: its noise is in every MSE, and bias tests fail "
         "where it shows. Give one with variance channels, or let it be made.");
   }

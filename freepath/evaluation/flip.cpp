@@ -52,7 +52,7 @@ Triple rgb_of(const std::array<double, 3>& relative) {
            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   };
-  static const double whole = determinant(kXyz);
+  static const double kWhole = determinant(kXyz);
   Triple rgb;
   for (int column = 0; column < 3; ++column) {
     double replaced[3][3];
@@ -61,7 +61,7 @@ Triple rgb_of(const std::array<double, 3>& relative) {
         replaced[row][other] = other == column ? relative[row] * white(row) : kXyz[row][other];
       }
     }
-    rgb[column] = static_cast<float>(determinant(replaced) / whole);
+    rgb[column] = static_cast<float>(determinant(replaced) / kWhole);
   }
   return rgb;
 }
@@ -232,15 +232,15 @@ Look look_at(std::span<const float> picture, const Extent& size, const FlipViewi
 /// [Andersson20, Eq. 7].
 double redistributed(double difference) {
   constexpr double kPower = 0.7;
-  constexpr double kLimit = 0.4;    // share of the largest difference,
+  constexpr double kLimit = 0.4;    // share of the kLargest difference,
   constexpr double kTarget = 0.95;  // and where it is mapped to
-  static const double largest = std::pow(
+  static const double kLargest = std::pow(
       hyab(hunt_adjusted_lab(relative_xyz({0, 1, 0})), hunt_adjusted_lab(relative_xyz({0, 0, 1}))),
       kPower);
   const double raised = std::pow(difference, kPower);
-  const double limit = kLimit * largest;
+  const double limit = kLimit * kLargest;
   if (raised < limit) return kTarget / limit * raised;
-  return kTarget + (raised - limit) / (largest - limit) * (1 - kTarget);
+  return kTarget + (raised - limit) / (kLargest - limit) * (1 - kTarget);
 }
 
 void check_sizes(std::span<const float> reference, std::span<const float> test,
@@ -291,6 +291,7 @@ std::vector<double> exposures_of(std::span<const float> reference, const ToneCur
   const double last = std::log2(curve.inverse(kShown) / median);
   const int count = std::max(2, static_cast<int>(std::ceil(last - first)));
   std::vector<double> exposures;
+  exposures.reserve(count);
   for (int i = 0; i < count; ++i) exposures.push_back(first + (last - first) * i / (count - 1));
   return exposures;
 }

@@ -72,6 +72,7 @@ Image heat_map(std::span<const float> values, int width, int height, const Color
 Image color_bar(const ColorScale& scale) {
   constexpr int kWidth = 256;
   std::vector<float> values;
+  values.reserve(kWidth);
   for (int i = 0; i < kWidth; ++i) {
     values.push_back(static_cast<float>(scale.value((i + 0.5) / kWidth)));
   }
