@@ -44,7 +44,9 @@ Examples:
   freepath compare cloud.vdb -o report --trackers delta,decomposition,ray-marching:step=4 --time 10
   freepath compare haze.vdb -o report --sigma-s 1,2,4 --trackers delta,spectral,hero-wavelength
   freepath compare cloud.vdb -o report --trackers delta --transmittance delta,ratio,residual-ratio
-  freepath compare scene.pbrt -o report --spp 64 --repeats 8 --reference reference.exr)";
+  freepath compare scene.pbrt -o report --spp 64 --repeats 8 --reference reference.exr
+
+Scenes are compared in rgb where --color says nothing else.)";
 
 struct Options {
   PictureOptions picture;

@@ -75,7 +75,8 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   ScenePlan plan;
   plan.file = options.volumes.files[0];
   plan.settings = read_run_settings(options);
-  plan.color = read_color(options);
+  // Noise that pixels share would be in the way of comparisons.
+  plan.color = options.color.empty() ? ColorMode::kRgb : read_color(options);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
   BuildOptions build;
   if (size) {
@@ -103,6 +104,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   Subject& subject = loaded.subject;
   subject.name = names_of(options.volumes.files);
   subject.digest = digest_of(command, built->files);
+  subject.shares_noise = plan.color == ColorMode::kSpectral;
   subject.width = window.width;
   subject.height = window.height;
   subject.render = [built, color = plan.color](const RenderSettings& settings,

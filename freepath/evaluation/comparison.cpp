@@ -294,9 +294,11 @@ void Experiment::evaluate() {
     result_.tests += result.bias.tests();
   }
   result_.level = settings_.level;
+  result_.shares_noise = subject_.shares_noise;
   result_.threshold = family_wise_threshold(settings_.level, result_.tests);
   for (ConfigurationResult& result : result_.configurations) {
-    result.verdict = result.bias.verdict(result_.threshold);
+    result.verdict =
+        subject_.shares_noise ? BiasVerdict::kUndecided : result.bias.verdict(result_.threshold);
   }
   find_efficiencies();
 }
@@ -319,10 +321,13 @@ void Experiment::find_efficiencies() {
 
 }  // namespace
 
+bool ConfigurationResult::has_overflows() const {
+  return std::any_of(runs.begin(), runs.end(),
+                     [](const ComparisonRun& run) { return run.overflows > 0; });
+}
+
 bool ConfigurationResult::is_trusted() const {
-  const bool overflows = std::any_of(runs.begin(), runs.end(),
-                                     [](const ComparisonRun& run) { return run.overflows > 0; });
-  return verdict == BiasVerdict::kPasses && !is_biased && !overflows;
+  return verdict != BiasVerdict::kFails && !bias.is_heavy_tailed && !is_biased && !has_overflows();
 }
 
 Interval ConfigurationResult::over_runs(

@@ -70,6 +70,7 @@ struct ConfigurationResult {
 
   /// Whether its pictures are unbiased as far as anyone can tell.
   bool is_trusted() const;
+  bool has_overflows() const;
   /// Of a figure over the runs.
   Interval over_runs(const std::function<double(const ComparisonRun&)>& figure) const;
 };
@@ -83,6 +84,7 @@ struct Comparison {
   double level = 0;                       ///< ComparisonSettings::level
   double threshold = 0;                   ///< Largest |z| that chance explains.
   std::size_t tests = 0;                  ///< How many it is for.
+  bool shares_noise = false;              ///< Subject::shares_noise: then no bias test is decided.
   double seconds = 0;                     ///< In all, with the reference.
 
   const Reference& reference(std::size_t configuration) const {

@@ -46,7 +46,7 @@ PageCell bias_cell(const ConfigurationResult& result) {
     cell.tone = Tone::kBad;
   }
   if (result.verdict == BiasVerdict::kUndecided) {
-    cell.note += ", heavy tails";
+    cell.note += result.bias.is_heavy_tailed ? ", heavy tails" : ", shared noise";
     cell.tone = Tone::kFaint;
   }
   if (result.is_biased) cell.note += ", biased by design";
@@ -257,7 +257,7 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
     }
   }
   for (const ConfigurationResult& result : comparison.configurations) {
-    if (result.verdict == BiasVerdict::kUndecided) {
+    if (result.bias.is_heavy_tailed) {
       findings.push_back(fmt::format(
           "{} has samples that are rare and large: a few pixels hold most of its variance. Its "
           "errors are guesses, and the bias test can't tell; give it more time, or a tracker whose "
@@ -283,6 +283,12 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
         fmt::format("The weights of {} paths of {} left the range of float and count as 0: its "
                     "pictures are not to be trusted.",
                     overflows, result.name));
+  }
+  if (comparison.shares_noise) {
+    findings.emplace_back(
+        "Pixels share the wavelengths of a sample, and the noise of colour with them, which no "
+        "pixel's variance knows: bias tests are not decided, and MSE holds some of the "
+        "reference's noise. Take --color rgb to have both.");
   }
   for (const Reference& reference : comparison.references) {
     if (reference.variance_known) continue;
