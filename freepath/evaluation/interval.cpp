@@ -40,9 +40,13 @@ std::optional<Interval> geometric_interval(std::span<const double> values) {
   return interval;
 }
 
+double level_of_each(double level, std::size_t tests) {
+  if (tests == 0) return level;
+  return -std::expm1(std::log1p(-level) / static_cast<double>(tests));
+}
+
 double family_wise_threshold(double level, std::size_t tests) {
-  const double each = -std::expm1(std::log1p(-level) / static_cast<double>(tests));
-  return -boost::math::quantile(boost::math::normal(), 0.5 * each);
+  return -boost::math::quantile(boost::math::normal(), 0.5 * level_of_each(level, tests));
 }
 
 }  // namespace freepath

@@ -24,6 +24,10 @@ Interval mean_interval(std::span<const double> values);
 /// which vary by factors. Nothing where a value is not positive or not finite.
 std::optional<Interval> geometric_interval(std::span<const double> values);
 
+/// Level of each of so many independent tests, so that any of them raises a false alarm with
+/// probability `level` (Šidák).
+double level_of_each(double level, std::size_t tests);
+
 /// Largest |z| to accept in each of `tests` two-sided tests so that all of them together raise a
 /// false alarm with probability `level` (Šidák).
 double family_wise_threshold(double level, std::size_t tests);

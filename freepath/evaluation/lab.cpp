@@ -9,6 +9,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/threads.h"
+#include "freepath/evaluation/interval.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 

@@ -1,6 +1,7 @@
 #include "freepath/evaluation/lab_statistics.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -155,50 +156,11 @@ LabCheck check_distribution(std::span<const LabMoments> bins, std::span<const do
   const bool complete = n * (1 - inner) < kFewExpected;
   const double statistic = n * (complete ? distance : distance + across * across / (1 - inner));
   const auto degrees = static_cast<double>(complete ? freedom - 1 : freedom);
-  check.p = std::isfinite(statistic) ? upper_gamma(0.5 * degrees, 0.5 * statistic) : 0;
+  check.p = std::isfinite(statistic) ? boost::math::gamma_q(0.5 * degrees, 0.5 * statistic) : 0;
   check.z = z_of_p(check.p);
   return check;
 }
 
 double normal_two_sided_p(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
-
-double upper_gamma(double a, double x) {
-  if (x <= 0) return 1;
-  const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
-  constexpr int kMaxTerms = 100'000;
-  if (x < a + 1) {  // the power series of 1 - Q
-    double term = 1 / a;
-    double sum = term;
-    for (int n = 1; n < kMaxTerms && term > 1e-16 * sum; ++n) {
-      term *= x / (a + n);
-      sum += term;
-    }
-    return std::max(0.0, 1 - scale * sum);
-  }
-  // Legendre's continued fraction, from the front by Lentz's method.
-  constexpr double kTiny = 1e-300;
-  double partial = x + 1 - a;
-  double numerators = 1 / kTiny;
-  double denominators = 1 / partial;
-  double fraction = denominators;
-  for (int n = 1; n < kMaxTerms; ++n) {
-    const double factor = n * (a - n);
-    partial += 2;
-    denominators = partial + factor * denominators;
-    if (std::abs(denominators) < kTiny) denominators = kTiny;
-    denominators = 1 / denominators;
-    numerators = partial + factor / numerators;
-    if (std::abs(numerators) < kTiny) numerators = kTiny;
-    const double step = numerators * denominators;
-    fraction *= step;
-    if (std::abs(step - 1) < 1e-15) break;
-  }
-  return scale * fraction;
-}
-
-double level_of_each(double level, std::size_t tests) {
-  if (tests == 0) return level;
-  return -std::expm1(std::log1p(-level) / static_cast<double>(tests));
-}
 
 }  // namespace freepath

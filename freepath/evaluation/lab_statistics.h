@@ -68,10 +68,5 @@ LabCheck check_distribution(std::span<const LabMoments> bins, std::span<const do
 
 /// P(|Z| ≥ |z|) of the standard normal distribution.
 double normal_two_sided_p(double z);
-/// Q(a, x) = Γ(a, x)/Γ(a) for a > 0 and x ≥ 0: the chance of a chi-square above 2x of 2a degrees.
-double upper_gamma(double a, double x);
-/// Level of each of so many independent tests, so that all raise one false alarm with probability
-/// `level` (Šidák).
-double level_of_each(double level, std::size_t tests);
 
 }  // namespace freepath

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
+#include "freepath/evaluation/interval.h"
 #include "freepath/evaluation/lab.h"
 #include "freepath/transport/walker.h"
 
