@@ -48,7 +48,8 @@ void add_light_options(CLI::App& command, PictureOptions& o) {
 void add_camera_options(CLI::App& command, PictureOptions& o) {
   command
       .add_option("--color", o.color,
-                  "Of a scene: rgb, or spectral, four wavelengths of each sample [spectral; to compare and plan, rgb]")
+                  "Of a scene: rgb, or spectral, four wavelengths of each sample [render: "
+                  "spectral, compare and plan: rgb]")
       ->group("Picture");
   command.add_option("--size", o.size, "Picture size, WIDTHxHEIGHT")
       ->capture_default_str()
