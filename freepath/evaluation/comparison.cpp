@@ -306,16 +306,8 @@ void Experiment::evaluate() {
 void Experiment::find_efficiencies() {
   const ConfigurationResult& baseline = result_.configurations[result_.baseline];
   for (ConfigurationResult& result : result_.configurations) {
-    std::vector<double> ratios;
-    for (std::size_t repeat = 0; repeat < result.runs.size(); ++repeat) {
-      const ComparisonRun& mine = result.runs[repeat];
-      const ComparisonRun& theirs = baseline.runs[repeat];
-      const bool positive = mine.error.mse > 0 && theirs.error.mse > 0;
-      ratios.push_back(positive ? theirs.error.mse * theirs.cpu_seconds /
-                                      (mine.error.mse * mine.cpu_seconds)
-                                : 0);
-    }
-    result.efficiency = geometric_interval(ratios);
+    result.efficiency =
+        result.efficiency_over(baseline, [](const ComparisonRun& run) { return run.cpu_seconds; });
   }
 }
 
@@ -328,6 +320,20 @@ bool ConfigurationResult::has_overflows() const {
 
 bool ConfigurationResult::is_trusted() const {
   return verdict != BiasVerdict::kFails && !bias.is_heavy_tailed && !is_biased && !has_overflows();
+}
+
+std::optional<Interval> ConfigurationResult::efficiency_over(
+    const ConfigurationResult& baseline,
+    const std::function<double(const ComparisonRun&)>& cost) const {
+  std::vector<double> ratios;
+  for (std::size_t repeat = 0; repeat < runs.size(); ++repeat) {
+    const ComparisonRun& mine = runs[repeat];
+    const ComparisonRun& theirs = baseline.runs[repeat];
+    const bool positive = mine.error.mse > 0 && theirs.error.mse > 0;
+    ratios.push_back(positive ? theirs.error.mse * cost(theirs) / (mine.error.mse * cost(mine))
+                              : 0);
+  }
+  return geometric_interval(ratios);
 }
 
 Interval ConfigurationResult::over_runs(

@@ -65,7 +65,7 @@ struct ConfigurationResult {
   std::vector<float> flip;  ///< Of the first run, of each pixel.
   BiasTest bias;            ///< Of all runs together.
   BiasVerdict verdict = BiasVerdict::kPasses;
-  /// 1/(MSE · CPU seconds) over that of the baseline in the same round, where both can be told.
+  /// Over the baseline, by CPU seconds.
   std::optional<Interval> efficiency;
 
   /// Whether its pictures are unbiased as far as anyone can tell.
@@ -73,6 +73,11 @@ struct ConfigurationResult {
   bool has_overflows() const;
   /// Of a figure over the runs.
   Interval over_runs(const std::function<double(const ComparisonRun&)>& figure) const;
+  /// 1/(MSE · cost) over that of the baseline in the same round; nothing where an error is below
+  /// the noise of the reference.
+  std::optional<Interval> efficiency_over(
+      const ConfigurationResult& baseline,
+      const std::function<double(const ComparisonRun&)>& cost) const;
 };
 
 /// All that was measured.

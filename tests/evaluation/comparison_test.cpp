@@ -121,20 +121,41 @@ TEST(Comparison, MeasuresTheSameAgainUpToTimes) {
   }
 }
 
-// Two experiments with other seeds: their intervals have to overlap.
+// Two experiments with other seeds: their intervals have to overlap. By look-ups, since seconds are
+// the machine's.
 TEST(Comparison, FindsEfficienciesAgain) {
   ComparisonSettings settings =
       settings_for({"delta", "weighted-delta:rate-scale=4", "per-wavelength"});
   const Comparison first = compare(small_subject(), settings);
   settings.seed = 77;
   const Comparison second = compare(small_subject(), settings);
+  const auto lookups = [](const ComparisonRun& run) {
+    return static_cast<double>(run.free_paths.lookups + run.shadow_rays.lookups);
+  };
+  const auto efficiency = [&](const Comparison& comparison, std::size_t i) {
+    return *comparison.configurations[i].efficiency_over(comparison.configurations[0], lookups);
+  };
   for (std::size_t i = 0; i < 3; ++i) {
-    const Interval a = *first.configurations[i].efficiency;
-    const Interval b = *second.configurations[i].efficiency;
+    const Interval a = efficiency(first, i);
+    const Interval b = efficiency(second, i);
     EXPECT_LE(*a.low, *b.high) << first.configurations[i].name;
     EXPECT_LE(*b.low, *a.high) << first.configurations[i].name;
   }
+  EXPECT_LT(*efficiency(first, 1).high, 0.5) << "four times the look-ups";
   EXPECT_DOUBLE_EQ(first.configurations[0].efficiency->value, 1);
+}
+
+TEST(Comparison, StatesEfficiencyByTimeOfTheProcessor) {
+  const Comparison comparison =
+      compare(small_subject(), settings_for({"delta", "weighted-delta:rate-scale=4"}));
+  const ConfigurationResult& result = comparison.configurations[1];
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < result.runs.size(); ++i) {
+    const ComparisonRun& mine = result.runs[i];
+    const ComparisonRun& theirs = comparison.configurations[0].runs[i];
+    ratios.push_back(theirs.error.mse / mine.error.mse * (theirs.cpu_seconds / mine.cpu_seconds));
+  }
+  EXPECT_NEAR(result.efficiency->value, geometric_interval(ratios)->value, 1e-9);
 }
 
 // Four times the rate means about four times the look-ups in the same flights.
