@@ -48,8 +48,14 @@ void add_light_options(CLI::App& command, PictureOptions& o) {
 void add_camera_options(CLI::App& command, PictureOptions& o) {
   command
       .add_option("--color", o.color,
-                  "Of a scene: rgb, or spectral, four wavelengths of each sample [render: "
+                  "Of a scene: rgb, or spectral, --wavelengths of each sample [render: "
                   "spectral, compare and plan: rgb]")
+      ->group("Picture");
+  command
+      .add_option("--wavelengths", o.wavelengths,
+                  "That a path carries together with --color spectral, 1 to 8")
+      ->capture_default_str()
+      ->check(CLI::Range(1, kMaxChannels))
       ->group("Picture");
   command.add_option("--size", o.size, "Picture size, WIDTHxHEIGHT")
       ->capture_default_str()
@@ -181,6 +187,7 @@ Interpolation read_interpolation(const std::string& text) {
 RenderSettings read_run_settings(const PictureOptions& options) {
   RenderSettings settings;
   settings.threads = options.threads;
+  settings.wavelengths = options.wavelengths;
   settings.batch = options.batch;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
@@ -231,12 +238,18 @@ void check_scene_options(const CLI::App& command, const PictureOptions& options)
     if (!looks_numeric(value)) continue;
     fail("--emission {} is for volumes: of a scene its file says that", value);
   }
+  if (command.count("--wavelengths") > 0 && read_color(options) != ColorMode::kSpectral) {
+    fail("--wavelengths are those of --color spectral, but here --color is {}", options.color);
+  }
 }
 
 void check_volume_options(const CLI::App& command, const PictureOptions& options) {
   if (command.count("--color") > 0 && options.color != "rgb") {
     fail("--color {}: volumes are rendered in rgb, scenes (.pbrt) in rgb or spectral",
          options.color);
+  }
+  if (command.count("--wavelengths") > 0) {
+    fail("--wavelengths is for scenes (.pbrt): volumes are rendered in rgb");
   }
 }
 

@@ -22,6 +22,7 @@ struct PictureOptions {
   VolumeOptions volumes;
   std::string size = "640x360", color;
   std::string environment, sun;
+  int wavelengths = RenderSettings{}.wavelengths;
   double turbidity = SunParameters{}.turbidity;
   std::string up = "y", look_at;
   double fov = CameraOptions{}.fov;

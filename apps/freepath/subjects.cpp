@@ -76,7 +76,8 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   plan.file = options.volumes.files[0];
   plan.settings = read_run_settings(options);
   // Noise that pixels share would be in the way of comparisons.
-  plan.color = options.color.empty() ? ColorMode::kRgb : read_color(options);
+  const bool is_rgb = options.color.empty() && command.count("--wavelengths") == 0;
+  plan.color = is_rgb ? ColorMode::kRgb : read_color(options);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
   BuildOptions build;
   if (size) {

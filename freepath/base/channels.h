@@ -7,15 +7,15 @@
 
 namespace freepath {
 
-/// The most channels that a path carries: R, G and B leave the last one 0.
-inline constexpr int kMaxChannels = 4;
+/// The most channels that a path carries; those that it does not use are 0.
+inline constexpr int kMaxChannels = 8;
 
 /// Values of the channels of a path: R, G, B, or radiances at its wavelengths. What the channels
 /// stand for, the path's SpectrumValues say.
 class alignas(16) Channels {
  public:
   constexpr Channels() = default;
-  constexpr explicit Channels(float value) : values_{value, value, value, value} {}
+  constexpr explicit Channels(float value) { values_.fill(value); }
   constexpr Channels(float a, float b, float c, float d = 0) : values_{a, b, c, d} {}
 
   constexpr float operator[](int i) const { return values_[i]; }
@@ -50,7 +50,9 @@ class alignas(16) Channels {
 
 inline bool is_black(const Channels& c) { return c == Channels(); }
 inline bool is_finite(const Channels& c) {
-  return std::isfinite(c[0]) && std::isfinite(c[1]) && std::isfinite(c[2]) && std::isfinite(c[3]);
+  float product = 0;  // NaN as soon as one channel is infinite or NaN
+  for (int i = 0; i < kMaxChannels; ++i) product += 0 * c[i];
+  return product == 0;
 }
 /// Largest magnitude of all channels; NaN if a channel is.
 inline float largest_magnitude(const Channels& c) {

@@ -65,6 +65,8 @@ class FieldSum {
   const float* albedo() const { return albedo_; }
 
   int component_count() const { return medium_.component_count; }
+  /// MediumView::source
+  int source(int channel) const { return medium_.source(channel); }
   const FieldLookup& lookup() const { return lookup_; }
 
   /// @param segment with the place of the super-voxel's record in Medium::walk_cells(), and its

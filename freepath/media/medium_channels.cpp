@@ -60,6 +60,19 @@ bool MediumChannels::emits() const {
   });
 }
 
+MediumChannels MediumChannels::only(int channel) const {
+  MediumChannels one;
+  one.count = 1;
+  for (const ComponentChannels& component : components) {
+    ComponentChannels& target = one.components.emplace_back();
+    target.sigma_a[0] = component.sigma_a[channel];
+    target.sigma_s[0] = component.sigma_s[channel];
+    target.emission[0] = component.emission[channel];
+    target.radiance.fill(component.radiance[channel]);
+  }
+  return one;
+}
+
 MediumChannels channels_of(const Medium& medium, int channel) {
   MediumChannels channels;
   channels.count = channel < 0 && !medium.is_grey() ? kChannels : 1;

@@ -31,7 +31,7 @@ struct ComponentChannels {
 
 /// Of all components of a medium.
 struct MediumChannels {
-  int count = 1;  ///< Channels: 1, 3 or 4.
+  int count = 1;  ///< Channels: 1 to kMaxChannels.
   std::vector<ComponentChannels> components;
 
   /// Whether the extinction of every component is the same in all channels, but for rounding.
@@ -41,6 +41,8 @@ struct MediumChannels {
   bool emits() const;
   /// Whether emitted radiance varies from place to place.
   bool has_radiance_fields() const;
+  /// One of the channels alone.
+  MediumChannels only(int channel) const;
 };
 
 /// R, G and B of the components of a medium, or one of them.

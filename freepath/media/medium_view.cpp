@@ -27,8 +27,8 @@ RadianceView view_of(const RadianceField& radiance, const Medium& medium) {
 void set_radiance(const Medium& medium, const MediumChannels& channels, MediumView& view) {
   auto views = std::make_shared<std::vector<RadianceView>>();
   for (const ComponentChannels& component : channels.components) {
-    for (const RadianceField& radiance : component.radiance) {
-      views->push_back(view_of(radiance, medium));
+    for (int slot = 0; slot < kMaxChannels; ++slot) {
+      views->push_back(view_of(component.radiance[view.source(slot)], medium));
     }
   }
   for (std::size_t k = 0; k < channels.components.size(); ++k) {
@@ -64,6 +64,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation,
   }
   view.aligned = medium.aligned();
   view.component_count = static_cast<int>(medium.components().size());
+  view.channels = channels.count;
   for (int k = 0; k < view.component_count; ++k) {
     const Component& component = medium.components()[k];
     ComponentView& target = view.components[k];
@@ -75,11 +76,12 @@ MediumView view_of(const Medium& medium, Interpolation interpolation,
     }
     target.walk_to_voxels = medium.walk_to_component(k);
     const ComponentChannels& values = channels.components[k];
-    target.sigma_a = values.sigma_a;
-    target.sigma_s = values.sigma_s;
     auto& emission = values.radiance[0].field ? target.radiance_scale : target.emission;
     for (int slot = 0; slot < kMaxChannels; ++slot) {
-      emission[slot] = values.sigma_a[slot] * values.emission[slot];
+      const int channel = view.source(slot);
+      target.sigma_a[slot] = values.sigma_a[channel];
+      target.sigma_s[slot] = values.sigma_s[channel];
+      emission[slot] = values.sigma_a[channel] * values.emission[channel];
     }
   }
   if (channels.has_radiance_fields()) set_radiance(medium, channels, view);

@@ -52,12 +52,17 @@ struct MediumView {
   std::array<float, 3> cell_edge{};    ///< densities are computed.
   bool aligned = true;                 ///< Medium::aligned(): one voxel serves all components.
   int component_count = 0;
+  int channels = 1;  ///< Of the paths; a walk of more repeats them.
   std::array<ComponentView, Medium::kMaxComponents> components{};
   /// What the components' radiance points at; null where emission does not vary.
   std::shared_ptr<const std::vector<RadianceView>> radiance_views{};
+
+  /// The channel of a path that a channel of the walk stands for.
+  int source(int channel) const { return channel < channels ? channel : channel % channels; }
 };
 
-/// @param channels of its components; their fields must live as long
+/// @param channels of its components; their fields must live as long. A walk of more channels than
+///   these meets them again from the first one on.
 /// @param origin what positions of rays are relative to [world]
 MediumView view_of(const Medium& medium, Interpolation interpolation,
                    const MediumChannels& channels, const Vec3d& origin = Vec3d(0));

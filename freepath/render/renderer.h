@@ -19,7 +19,8 @@ struct RenderSettings {
   /// Never breaks a pass off for want of time: all pixels have as many samples, two at least, so
   /// that their variance is known. The time is that of the pass which ends next to it.
   bool whole_passes = false;
-  int threads = 0;  ///< 0: as many as the machine has.
+  int wavelengths = 4;  ///< Of a path, where they are rendered: 1 to kMaxChannels.
+  int threads = 0;      ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
   /// What the film records; path layers cost time, and all cost memory.
   LayerSet layers = LayerSet::standard();

@@ -36,13 +36,15 @@ class SpectralDistribution {
            std::visit([wavelength](const auto& spectrum) { return spectrum(wavelength); }, kind_);
   }
 
-  /// The values at the wavelengths of a path [nm]; the kind is looked up once for all of them.
-  template <std::size_t kCount>
-  std::array<double, kCount> at(const std::array<double, kCount>& wavelengths) const {
-    std::array<double, kCount> values;
+  /// The values at the first `count` of wavelengths [nm]; the kind is looked up once for all of
+  /// them.
+  template <std::size_t kMost>
+  std::array<double, kMost> at(const std::array<double, kMost>& wavelengths,
+                               std::size_t count = kMost) const {
+    std::array<double, kMost> values{};
     std::visit(
         [&](const auto& spectrum) {
-          for (std::size_t i = 0; i < kCount; ++i) values[i] = factor_ * spectrum(wavelengths[i]);
+          for (std::size_t i = 0; i < count; ++i) values[i] = factor_ * spectrum(wavelengths[i]);
         },
         kind_);
     return values;

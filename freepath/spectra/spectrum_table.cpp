@@ -55,7 +55,7 @@ SpectrumTable::SpectrumTable(const RgbColorSpace& space)
 
 float SpectrumValues::value_of(const SpectralDistribution& spectrum, SpectrumRole role,
                                int channel) const {
-  if (channels_ == kMaxChannels) return static_cast<float>(spectrum(wavelengths_[channel]));
+  if (is_spectral()) return static_cast<float>(spectrum(wavelengths_[channel]));
   return rgb_of(spectrum, role, *space_)[channel];
 }
 
@@ -87,7 +87,8 @@ SpectrumValues SpectrumTable::in_rgb() const {
         to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
     values.to_rgb_[i] = Vec3f(unit);
   }
-  values.to_rgb_[3] = Vec3f(0);  // times a channel that is 0, but must not be NaN
+  // Times channels that are 0, but must not be NaN.
+  std::fill(values.to_rgb_.begin() + 3, values.to_rgb_.end(), Vec3f(0));
   values.channels_ = 3;
   values.space_ = &space_;
   return values;
@@ -97,10 +98,12 @@ SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
   SpectrumValues values;
   values.values_.reserve(entries_.size());
   for (const Entry& entry : entries_) {
-    values.values_.push_back(to_channels(entry.spectrum.at(wavelengths.lambda)));
+    values.values_.push_back(to_channels(entry.spectrum.at(wavelengths.lambda, wavelengths.count)));
   }
+  values.channels_ = static_cast<int>(wavelengths.count);
+  values.to_rgb_.fill(Vec3f(0));
   const LinearSpectrum& white = texture_space().illuminant();
-  for (int i = 0; i < kMaxChannels; ++i) {
+  for (int i = 0; i < values.channels_; ++i) {
     const double lambda = wavelengths.lambda[i];
     // Red and blue are smooth fits; green is what they leave of white, so that greys are constant
     // and every colour comes back exactly. It falls to -0.03 where little is seen, near 420 nm.
@@ -112,12 +115,12 @@ SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
       values.reflectance_basis_[c][i] = static_cast<float>(mix[c]);
       values.illuminant_basis_[c][i] = static_cast<float>(mix[c] * white(lambda));
     }
-    const Vec3d xyz = color_matching(lambda) /
-                      (wavelengths.pdf[i] * static_cast<double>(kMaxChannels) * kLuminousIntegral);
+    const Vec3d xyz =
+        color_matching(lambda) /
+        (wavelengths.pdf[i] * static_cast<double>(values.channels_) * kLuminousIntegral);
     values.to_rgb_[i] = Vec3f(space_.from_xyz(xyz));
   }
   values.wavelengths_ = wavelengths.lambda;
-  values.channels_ = kMaxChannels;
   values.space_ = &space_;
   return values;
 }

@@ -44,8 +44,10 @@ class SpectrumValues {
   /// A colour of a texture as emitted light.
   Channels illuminant(const Vec3f& rgb) const { return mix(illuminant_basis_, rgb); }
 
-  /// Channels that are in use: 3 of R, G, B.
+  /// Channels that are in use: 3 of R, G, B, or one for each wavelength. All others are 0.
   int channels() const { return channels_; }
+  /// Whether the channels are wavelengths.
+  bool is_spectral() const { return wavelengths_[0] > 0; }
 
   /// The colour of what a path carries, R, G, B of the table's space: an unbiased estimate for
   /// wavelengths that are drawn as sample_wavelengths does.

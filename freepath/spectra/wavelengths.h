@@ -24,21 +24,25 @@ double wavelength_pdf(double wavelength, WavelengthDensity density);
 double sample_wavelength(double u, WavelengthDensity density);
 
 /// The wavelengths that a path carries.
-template <std::size_t kCount>
+template <std::size_t kMost>
 struct Wavelengths {
-  std::array<double, kCount> lambda;  ///< [nm]; the first is the hero.
-  std::array<double, kCount> pdf;     ///< Of each alone [1/nm].
+  std::size_t count = 0;
+  std::array<double, kMost> lambda{};  ///< [nm]; the first is the hero.
+  std::array<double, kMost> pdf{};     ///< Of each alone [1/nm].
 };
 
 /// A hero wavelength drawn by u, and the others at equal distances of probability from it, going
 /// round at the end [Wilkie14]. Each alone has the density's distribution, and together
 /// they stratify it.
 /// @param u [0, 1)
-template <std::size_t kCount>
-Wavelengths<kCount> sample_wavelengths(double u, WavelengthDensity density) {
-  Wavelengths<kCount> result;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    double rotated = u + static_cast<double>(i) / static_cast<double>(kCount);
+/// @param count at most kMost
+template <std::size_t kMost>
+Wavelengths<kMost> sample_wavelengths(double u, WavelengthDensity density,
+                                      std::size_t count = kMost) {
+  Wavelengths<kMost> result;
+  result.count = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    double rotated = u + static_cast<double>(i) / static_cast<double>(count);
     if (rotated >= 1) rotated -= 1;
     result.lambda[i] = sample_wavelength(rotated, density);
     result.pdf[i] = wavelength_pdf(result.lambda[i], density);
@@ -48,14 +52,14 @@ Wavelengths<kCount> sample_wavelengths(double u, WavelengthDensity density) {
 
 /// X, Y, Z of the radiance that a path carries at its wavelengths, with Y = 1 for a radiance of 1
 /// at all wavelengths. Unbiased if the radiances are, for wavelengths from sample_wavelengths.
-template <std::size_t kCount>
-Vec3d estimate_xyz(const std::array<double, kCount>& radiance,
-                   const Wavelengths<kCount>& wavelengths) {
+template <std::size_t kMost>
+Vec3d estimate_xyz(const std::array<double, kMost>& radiance,
+                   const Wavelengths<kMost>& wavelengths) {
   Vec3d sum(0);
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < wavelengths.count; ++i) {
     sum += color_matching(wavelengths.lambda[i]) * (radiance[i] / wavelengths.pdf[i]);
   }
-  return sum / (static_cast<double>(kCount) * kLuminousIntegral);
+  return sum / (static_cast<double>(wavelengths.count) * kLuminousIntegral);
 }
 
 }  // namespace freepath

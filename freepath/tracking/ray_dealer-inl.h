@@ -85,7 +85,8 @@ class RayDealer {
     dealer.deal(chunk_->begin + (next_ray_ - chunk_begin_), group.begin);
     for (int channel = 0; channel < N; ++channel) {
       if (rays_.weighted()) {
-        dealer.deal(rays_.weight[channel].data() + next_ray_, group.weight[channel]);
+        dealer.deal(rays_.weight[medium_.source(channel)].data() + next_ray_,
+                    group.weight[channel]);
       } else {
         dealer.fill(1.0F, group.weight[channel]);
       }
@@ -138,7 +139,7 @@ class RayDealer {
     VecF weight[N];
     for (int channel = 0; channel < N; ++channel) {
       if (rays_.weighted()) {
-        dealer.deal(rays_.density[channel].data() + next_ray_, group.rows[channel]);
+        dealer.deal(rays_.density[medium_.source(channel)].data() + next_ray_, group.rows[channel]);
       }
       weight[channel] = hn::Load(kFloat, group.weight[channel]);
     }

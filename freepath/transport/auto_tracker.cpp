@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "freepath/base/spectrum.h"
+#include <algorithm>
 
 namespace freepath {
 namespace {
@@ -15,16 +15,20 @@ constexpr double kWorthwhileControl = 0.3;
 constexpr std::size_t kManyComponents = 3;
 
 /// Share of the tentative collisions that the minima decide, were the rays spread evenly.
-double control_share(const Medium& medium) {
+double control_share(const Medium& medium, const MediumChannels& channels) {
   const SuperVoxels& cells = medium.super_voxels();
   const std::size_t components = medium.components().size();
   double control = 0;
   double rate = 0;
   for (std::size_t k = 0; k < components; ++k) {
-    const double sigma_t = largest(medium.components()[k].sigma_t());
+    const ComponentChannels& values = channels.components[k];
+    float sigma_t = 0;
+    for (int channel = 0; channel < channels.count; ++channel) {
+      sigma_t = std::max(sigma_t, values.sigma_a[channel] + values.sigma_s[channel]);
+    }
     for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
-      control += sigma_t * cells.minima[cell * components + k];
-      rate += sigma_t * cells.maxima[cell * components + k];
+      control += double{sigma_t} * cells.minima[cell * components + k];
+      rate += double{sigma_t} * cells.maxima[cell * components + k];
     }
   }
   return rate > 0 ? control / rate : 0;
@@ -33,10 +37,14 @@ double control_share(const Medium& medium) {
 }  // namespace
 
 TrackerChoice choose_tracker(const Medium& medium) {
-  const double share = control_share(medium);
+  return choose_tracker(medium, channels_of(medium));
+}
+
+TrackerChoice choose_tracker(const Medium& medium, const MediumChannels& channels) {
+  const double share = control_share(medium, channels);
   const std::string decided =
       fmt::format("minima of super-voxels decide {:.0f} % of the collisions", 100 * share);
-  if (!medium.has_grey_extinction()) {
+  if (!channels.has_grey_extinction()) {
     const std::string chromatic = "the extinction differs between channels, and " + decided;
     return share >= kWorthwhileControl ? TrackerChoice{"spectral-decomposition", chromatic}
                                        : TrackerChoice{"spectral", chromatic};

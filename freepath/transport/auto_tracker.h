@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "freepath/media/medium.h"
+#include "freepath/media/medium_channels.h"
 
 namespace freepath {
 
@@ -19,5 +20,7 @@ struct TrackerChoice {
 /// share of tentative collisions that a control of super-voxel minima would decide without a
 /// look-up, and from the number of components that a look-up reads.
 TrackerChoice choose_tracker(const Medium& medium);
+/// The same for given cross sections of its components.
+TrackerChoice choose_tracker(const Medium& medium, const MediumChannels& channels);
 
 }  // namespace freepath

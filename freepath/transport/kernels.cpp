@@ -102,6 +102,12 @@ std::string_view to_string(Simd simd) {
   return "unknown";
 }
 
+int compiled_channels(const WalkTable& walks, int channels) {
+  int compiled = channels;
+  while (walks[compiled] == nullptr) ++compiled;
+  return compiled;
+}
+
 const KernelTable& kernels(Simd simd) {
   static const std::array<KernelTable, std::size(kTargets)> kTables = [] {
     std::array<KernelTable, std::size(kTargets)> tables;

@@ -28,11 +28,25 @@ using WalkFunction = void (*)(const MediumView& medium, std::span<const float> o
                               const WalkModes& modes, uint64_t seed, const RayStream& rays,
                               FlightStream& flights, WalkStatistics& statistics);
 
+/// Walks by the number of channels; null where it is not compiled.
+using WalkTable = std::array<WalkFunction, kMaxChannels + 1>;
+
+/// The walks that are compiled, of a template of them: `walk_of.operator()<N>()` is the walk of N
+/// channels. Other numbers take the next larger walk (compiled_channels).
+template <class WalkOf>
+WalkTable walk_table(const WalkOf& walk_of) {
+  WalkTable walks{};
+  walks[1] = walk_of.template operator()<1>();
+  walks[3] = walk_of.template operator()<3>();
+  walks[4] = walk_of.template operator()<4>();
+  walks[kMaxChannels] = walk_of.template operator()<kMaxChannels>();
+  return walks;
+}
+
 /// One method as compiled for one target.
 struct Kernel {
   MethodInfo info;
-  /// By the number of channels: 1, 3 and 4 are compiled.
-  std::array<WalkFunction, kMaxChannels + 1> walks{};
+  WalkTable walks{};
   /// Throws Error if the method can't walk this medium; null where it can walk any.
   void (*check)(const Medium& medium, Interpolation interpolation) = nullptr;
   /// Whether it takes emitted radiance for the same everywhere.
@@ -44,6 +58,9 @@ struct KernelTable {
   std::vector<Kernel> trackers;
   std::vector<Kernel> transmittance;
 };
+
+/// Channels of the smallest compiled walk that carries so many.
+int compiled_channels(const WalkTable& walks, int channels);
 
 /// @throws Error if this machine can't run the target
 const KernelTable& kernels(Simd simd);

@@ -53,7 +53,7 @@ void fly_stream(const MediumView& view, std::span<const float> options, const Wa
         Vec3d(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]), rays.t_max[i]);
     ReferenceFlight<kN> flight;
     for (int channel = 0; channel < kN; ++channel) {
-      flight.weight[channel] = rays.weighted() ? rays.weight[channel][i] : 1.0F;
+      flight.weight[channel] = rays.weighted() ? rays.weight[view.source(channel)][i] : 1.0F;
     }
     const uint64_t before = statistics.lookups;
     if (path.length > 0) {
@@ -72,11 +72,9 @@ void fly_stream(const MediumView& view, std::span<const float> options, const Wa
 
 template <class Method>
 Kernel kernel(void (*check)(const Medium&, Interpolation) = nullptr) {
-  return {
-      Method::kInfo,
-      {nullptr, &fly_stream<1, Method>, nullptr, &fly_stream<3, Method>, &fly_stream<4, Method>},
-      check,
-      /*uniform_emission=*/true};
+  return {Method::kInfo,
+          walk_table([]<int kN>() -> WalkFunction { return &fly_stream<kN, Method>; }), check,
+          /*uniform_emission=*/true};
 }
 
 /// Fails where densities are computed: reference methods go from voxel to voxel.

@@ -16,12 +16,20 @@ FlightStream sample_free_paths(const Medium& medium, const RayStream& rays,
                                const WalkSettings& settings = {},
                                int channel = Walker::kAllChannels,
                                WalkStatistics* statistics = nullptr);
+/// The same in any 1 to kMaxChannels channels, which one path carries.
+/// @param channels cross sections of each component of the medium
+FlightStream sample_free_paths(const Medium& medium, const MediumChannels& channels,
+                               const RayStream& rays, const WalkSettings& settings = {},
+                               WalkStatistics* statistics = nullptr);
 
 /// Estimates the transmittance from each ray's origin to its t_max: the weights of the flights.
 /// Arguments and errors as above.
 FlightStream estimate_transmittance(const Medium& medium, const RayStream& rays,
                                     const WalkSettings& settings = {},
                                     int channel = Walker::kAllChannels,
+                                    WalkStatistics* statistics = nullptr);
+FlightStream estimate_transmittance(const Medium& medium, const MediumChannels& channels,
+                                    const RayStream& rays, const WalkSettings& settings = {},
                                     WalkStatistics* statistics = nullptr);
 
 }  // namespace freepath

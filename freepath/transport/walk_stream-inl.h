@@ -32,11 +32,14 @@ void walk_stream(const MediumView& medium, std::span<const float> options, const
       .run();
 }
 
+template <class Method>
+WalkTable walks_of() {
+  return walk_table([]<int N>() -> WalkFunction { return &walk_stream<N, Method>; });
+}
+
 template <class... Methods>
 std::vector<Kernel> make_kernels(MethodList<Methods...> /*list*/) {
-  return {Kernel{Methods::kInfo,
-                 {nullptr, &walk_stream<1, Methods>, nullptr, &walk_stream<3, Methods>,
-                  &walk_stream<4, Methods>}}...};
+  return {Kernel{Methods::kInfo, walks_of<Methods>()}...};
 }
 
 }  // namespace freepath::HWY_NAMESPACE

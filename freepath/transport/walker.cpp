@@ -1,6 +1,7 @@
 #include "freepath/transport/walker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "freepath/base/error.h"
@@ -32,6 +33,31 @@ const MethodInfo& info_of(const std::string& text, std::span<const MethodInfo> k
 [[noreturn]] void fail_to_share_paths(const WalkSettings& settings) {
   fail("tracker '{}' gives each channel of this medium its own path: walk each by itself",
        settings.tracker);
+}
+
+void check_channels(const Medium& medium, const MediumChannels& channels) {
+  if (channels.count < 1 || channels.count > kMaxChannels) {
+    fail("a path carries 1 to {} channels, not {}", kMaxChannels, channels.count);
+  }
+  if (channels.components.size() != medium.components().size()) {
+    fail("cross sections are given of {} components, but the medium has {}",
+         channels.components.size(), medium.components().size());
+  }
+  const auto is_sound = [](float value) { return std::isfinite(value) && value >= 0; };
+  for (std::size_t k = 0; k < channels.components.size(); ++k) {
+    const ComponentChannels& values = channels.components[k];
+    for (int channel = 0; channel < channels.count; ++channel) {
+      if (is_sound(values.sigma_a[channel]) && is_sound(values.sigma_s[channel]) &&
+          is_sound(values.emission[channel])) {
+        continue;
+      }
+      fail(
+          "component {} in channel {}: sigma_a {}, sigma_s {} and emission {} have to be finite "
+          "and "
+          "not negative",
+          k, channel, values.sigma_a[channel], values.sigma_s[channel], values.emission[channel]);
+    }
+  }
 }
 
 MediumChannels channels_to_walk(const Medium& medium, const WalkSettings& settings, int channel) {
@@ -68,6 +94,7 @@ Walker::Walker(const Medium& medium, const WalkSettings& settings, int channel)
 
 Walker::Walker(const Medium& medium, const MediumChannels& channels, const WalkSettings& settings)
     : seed_(settings.seed), channels_(channels.is_grey() ? 1 : channels.count) {
+  check_channels(medium, channels);
   if (channels_ > 1 && !shares_paths(channels, settings)) fail_to_share_paths(settings);
   view_ = view_of(medium, settings.interpolation, channels, settings.origin);
   const KernelTable& table = kernels(settings.simd);
@@ -84,10 +111,11 @@ Walker::Walker(const Medium& medium, const MediumChannels& channels, const WalkS
         "place to place: take a null-collision tracker",
         settings.tracker);
   }
-  tracker_.function = tracker.walks[channels_];
+  tracker_.function = tracker.walks[compiled_channels(tracker.walks, channels_)];
   // One extinction for all channels makes one transmittance.
   transmittance_channels_ = channels.has_grey_extinction() ? 1 : channels_;
-  transmittance_.function = transmittance.walks[transmittance_channels_];
+  transmittance_.function =
+      transmittance.walks[compiled_channels(transmittance.walks, transmittance_channels_)];
   modes_ = {settings.absorption, settings.emission, channels.emits()};
 }
 

@@ -48,7 +48,9 @@ class Walker {
 
   /// A walker of given channels: of wavelengths, or with emission that varies from place to place.
   /// @param channels one for each component of the medium; their fields must outlive the walker
-  /// @throws Error as above
+  /// @throws Error as above; for cross sections that are negative or not finite, or are not those
+  /// of
+  ///   the medium's components, or more than kMaxChannels
   Walker(const Medium& medium, const MediumChannels& channels, const WalkSettings& settings);
 
   /// Flies every ray to its next scattering, absorption or escape [Kutz17]. Flights are written to
@@ -59,7 +61,7 @@ class Walker {
   void transmittance(const RayStream& rays, FlightStream& flights,
                      WalkStatistics& statistics) const;
 
-  /// Channels in the weights of a flight: 1, where one stands for all, 3 or 4.
+  /// Channels in the weights of a flight: 1, where one stands for all, or those of the medium.
   int channels() const { return channels_; }
   /// Channels in the weights of a transmittance: 1 where one extinction serves all.
   int transmittance_channels() const { return transmittance_channels_; }

@@ -168,9 +168,9 @@ std::vector<std::string> certified_variants(bool free_paths) {
 std::optional<std::string> reason_against(const CertifiedCase& test) {
   try {
     const WalkSettings settings = test.settings();
-    const Medium& medium = test.walked_medium();
-    const Walker walker(medium, settings,
-                        shares_paths(medium, settings) ? Walker::kAllChannels : 0);
+    const MediumChannels& channels = certified_media()[test.medium].channels;
+    const bool shared = shares_paths(channels, settings);
+    const Walker walker(test.walked_medium(), shared ? channels : channels.only(0), settings);
     return {};
   } catch (const Error& error) {
     return error.what();

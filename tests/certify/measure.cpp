@@ -94,12 +94,13 @@ class Measurement {
   Measurement(const CertifiedCase& test, const CertifyBudget& budget)
       : test_(test),
         medium_(test.walked_medium()),
+        channels_(certified_media()[test.medium].channels),
         ray_(certified_media()[test.medium].ray),
-        profile_(medium_, ray_, test.interpolation),
+        profile_(medium_, channels_, ray_, test.interpolation),
         budget_(budget),
         settings_(test.settings()),
-        shared_(!test.free_paths || shares_paths(medium_, settings_)) {
-    for (int channel = 0; channel < kChannels; ++channel) expect(channel);
+        shared_(!test.free_paths || shares_paths(channels_, settings_)) {
+    for (int channel = 0; channel < channels_.count; ++channel) expect(channel);
   }
 
   CaseResult run() {
@@ -143,8 +144,8 @@ class Measurement {
   }
   /// Channels whose numbers differ.
   int channel_count() const {
-    return test_.free_paths ? (medium_.is_grey() ? 1 : kChannels)
-                            : (medium_.has_grey_extinction() ? 1 : kChannels);
+    const bool grey = test_.free_paths ? channels_.is_grey() : channels_.has_grey_extinction();
+    return grey ? 1 : channels_.count;
   }
 
   /// The exact side of one channel.
@@ -155,12 +156,12 @@ class Measurement {
     exact.transmittance = std::exp(-profile_.depth(channel));
     exact.radiance = exact.transmittance;
     if (!test_.free_paths) return;
-    const std::vector<Component>& components = medium_.components();
+    const std::vector<ComponentChannels>& components = channels_.components;
     for (std::size_t bin = 0; bin + 1 < tally.edges.size(); ++bin) {
       double scattered = 0;
       profile_.visit(tally.edges[bin], tally.edges[bin + 1], [&](const RayProfile::Node& node) {
         for (std::size_t k = 0; k < components.size(); ++k) {
-          const Component& component = components[k];
+          const ComponentChannels& component = components[k];
           const double hit = node.width * node.transmittance[channel] * node.density[k];
           scattered += hit * component.sigma_s[channel];
           exact.radiance += hit * (component.sigma_a[channel] * component.emission[channel] +
@@ -196,14 +197,15 @@ class Measurement {
   }
 
   void walk(uint32_t pixel, uint64_t paths, WalkStatistics& statistics) {
-    for (ChannelTally& tally : tallies_) {
+    for (int channel = 0; channel < channels_.count; ++channel) {
+      ChannelTally& tally = tallies_[channel];
       tally.radiance = tally.escaped = {};
       tally.bins.assign(tally.edges.size() - 1, {});
     }
     const int turns = shared_ ? 1 : channel_count();
     FlightStream flights;
     for (int turn = 0; turn < turns; ++turn) {
-      const Walker walker(medium_, settings_, shared_ ? Walker::kAllChannels : turn);
+      const Walker walker(medium_, shared_ ? channels_ : channels_.only(turn), settings_);
       for (uint64_t done = 0; done < paths; done += kBatch) {
         const std::size_t count = std::min<uint64_t>(kBatch, paths - done);
         RayStream rays =
@@ -296,7 +298,7 @@ class Measurement {
           bins[bin].count < kFew / 2 || bins[bin].paths_for_normal_mean(paths) > paths;
       if (thin) continue;  // with the escapes, so to speak
       ++freedom;
-      const double square = bins[bin].squares / paths;
+      const double square = mean_square(bins[bin], expected, paths);
       const double apart = bins[bin].sum / paths - expected;
       distance += apart * apart / square;
       across += apart * expected / square;
@@ -307,13 +309,22 @@ class Measurement {
       return check;
     }
     // Where all paths end in bins with the same weight, the last distance follows from the others.
-    const bool complete = 1 - inner < 1e-3;
+    const bool complete = paths * (1 - inner) < kFewExpected;
     const double statistic =
         paths * (complete ? distance : distance + across * across / (1 - inner));
     const auto degrees = static_cast<double>(complete ? freedom - 1 : freedom);
     if (degrees > 0)
       check.z = std::max(check.z, z_of_p(upper_gamma(0.5 * degrees, 0.5 * statistic)));
     return check;
+  }
+
+  /// Of what paths contribute to a bin, in proportion to the exact mean: of fewer contributions
+  /// than expected the squares are too small by as much as the sum. Unless the sum is lost in its
+  /// noise.
+  static double mean_square(const Moments& bin, double expected, double paths) {
+    const double mean = bin.sum / paths;
+    const bool clear = mean > 5 * std::sqrt(bin.variance(paths) / paths);
+    return clear ? bin.squares / bin.sum * expected : bin.squares / paths;
   }
 
   void compare(int channel, double paths, CaseResult& result) const {
@@ -338,14 +349,15 @@ class Measurement {
 
   const CertifiedCase& test_;
   const Medium& medium_;
+  const MediumChannels& channels_;
   CertifiedRay ray_;
   RayProfile profile_;
   CertifyBudget budget_;
   WalkSettings settings_;
   bool shared_;
   uint64_t most_paths_ = 0;
-  std::array<ChannelTally, kChannels> tallies_;
-  std::array<Exact, kChannels> exact_;
+  std::array<ChannelTally, kMaxChannels> tallies_;
+  std::array<Exact, kMaxChannels> exact_;
 };
 
 }  // namespace

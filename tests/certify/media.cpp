@@ -105,17 +105,56 @@ CertifiedRay through_crooked(int number) {
   return {ray.origin, ray.direction, ray.t_max};
 }
 
+MediumChannels rgb_of(const std::vector<Component>& components) {
+  MediumChannels channels;
+  channels.count = kChannels;
+  for (const Component& component : components) {
+    ComponentChannels& target = channels.components.emplace_back();
+    for (int c = 0; c < kChannels; ++c) {
+      target.sigma_a[c] = component.sigma_a[c];
+      target.sigma_s[c] = component.sigma_s[c];
+      target.emission[c] = component.emission[c];
+    }
+  }
+  return channels;
+}
+
+/// Extinctions from about 0.6 to 2.8, albedos from 0.3 to 0.9; of another component in other order.
+ComponentChannels wavelengths_of(int count, int component) {
+  ComponentChannels channels;
+  for (int c = 0; c < count; ++c) {
+    const auto place = static_cast<float>((c * (component == 0 ? 1 : 3) + component) % count) /
+                       static_cast<float>(count);
+    channels.sigma_s[c] = 0.3F + 2.2F * place * place;
+    channels.sigma_a[c] = 0.3F + 0.4F * std::abs(place - 0.5F);
+    channels.emission[c] = 0.5F + place;
+  }
+  return channels;
+}
+
 class MediaList {
  public:
+  /// R, G and B of the components.
   void add(const char* name, std::vector<Component> components, const CertifiedRay& ray,
            int super_voxel = 8) {
-    auto tight = std::make_shared<const Medium>(std::move(components), super_voxel);
-    auto loose = std::make_shared<const Medium>(tight->with_scaled_bounds(kLooseness));
-    media_.push_back({name, std::move(tight), std::move(loose), ray});
+    MediumChannels channels = rgb_of(components);
+    add(name, std::move(components), std::move(channels), ray, super_voxel);
+  }
+  /// As many channels as there are wavelengths, each with a cross section and an albedo of its own.
+  void add_wavelengths(const char* name, int count, std::vector<Component> components,
+                       const CertifiedRay& ray) {
+    MediumChannels channels;
+    channels.count = count;
+    for (std::size_t k = 0; k < components.size(); ++k) {
+      channels.components.push_back(wavelengths_of(count, static_cast<int>(k)));
+    }
+    add(name, std::move(components), std::move(channels), ray, 4);
   }
   /// One component, its optical thickness in the thickest channel scaled to what is wanted.
   void add_thick(const char* name, double thickness, Component component, const CertifiedRay& ray) {
-    const RayProfile profile(Medium({component}), ray, Interpolation::kNearest);
+    const MediumChannels channels = rgb_of({component});
+    const Medium medium({component});
+    const RayProfile profile(medium, channels, ray, Interpolation::kNearest);
     double present = 0;
     for (int channel = 0; channel < kChannels; ++channel) {
       present = std::max(present, profile.depth(channel));
@@ -127,8 +166,19 @@ class MediaList {
   std::vector<CertifiedMedium> take() { return std::move(media_); }
 
  private:
+  void add(const char* name, std::vector<Component> components, MediumChannels channels,
+           const CertifiedRay& ray, int super_voxel) {
+    auto tight = std::make_shared<const Medium>(std::move(components), super_voxel);
+    auto loose = std::make_shared<const Medium>(tight->with_scaled_bounds(kLooseness));
+    media_.push_back({name, std::move(tight), std::move(loose), std::move(channels), ray});
+  }
+
   std::vector<CertifiedMedium> media_;
 };
+
+Component ramp() {
+  return make_component(line(64, [](double x) { return 2 * x; }), kRedAbsorption, kRedScattering);
+}
 
 void add_lines(MediaList& list) {
   const auto constant = line(16, [](double) { return 1.0; });
@@ -150,10 +200,7 @@ void add_lines(MediaList& list) {
            {make_component(line(64, [](double x) { return x < 0.4 ? 0.3 : 1.7; }), kGreyAbsorption,
                            kGreyScattering)},
            along_line());
-  list.add(
-      "ramp",
-      {make_component(line(64, [](double x) { return 2 * x; }), kRedAbsorption, kRedScattering)},
-      along_line());
+  list.add("ramp", {ramp()}, along_line());
   list.add("zeros",
            {make_component(line(96,
                                 [](double x) {
@@ -202,6 +249,17 @@ const std::vector<CertifiedMedium>& certified_media() {
     add_lines(list);
     add_volumes(list);
     const CertifiedRay ray = {Vec3f(0, 0, 0), Vec3f(1, 0, 0), 10};
+    list.add_wavelengths("ramp, two wavelengths", 2, {ramp()}, along_line());
+    list.add_wavelengths("dense noise, four wavelengths", 4,
+                         {make_component(dense_noise(), kRedAbsorption, kRedScattering)},
+                         through_crooked(0));
+    list.add_wavelengths("two components, five wavelengths", 5,
+                         {make_component(lumpy_field(0), kRedAbsorption, kRedScattering),
+                          make_component(lumpy_field(1), kBlueAbsorption, kBlueScattering)},
+                         through_crooked(0));
+    list.add_wavelengths("dense noise, eight wavelengths", 8,
+                         {make_component(dense_noise(2), kRedAbsorption, kRedScattering)},
+                         through_crooked(2));
     list.add("fixture A", FixtureA::medium(64, kFixtureVoxels).components(), ray, 64);
     return list.take();
   }();

@@ -14,6 +14,7 @@ struct CertifiedMedium {
   std::string name;
   std::shared_ptr<const Medium> tight;  ///< With the bounds that super-voxels give.
   std::shared_ptr<const Medium> loose;  ///< With maxima times 4 and minima divided by 4.
+  MediumChannels channels;
   CertifiedRay ray;
 
   const Medium& with_bounds(bool tight_ones) const { return tight_ones ? *tight : *loose; }

@@ -57,8 +57,12 @@ double density_at(const Field& field, const Vec3d& point, bool nearest) {
 
 }  // namespace
 
-RayProfile::RayProfile(const Medium& medium, const CertifiedRay& ray, Interpolation interpolation)
-    : medium_(medium), ray_(ray), nearest_(interpolation == Interpolation::kNearest) {
+RayProfile::RayProfile(const Medium& medium, const MediumChannels& channels,
+                       const CertifiedRay& ray, Interpolation interpolation)
+    : medium_(medium),
+      channels_(channels),
+      ray_(ray),
+      nearest_(interpolation == Interpolation::kNearest) {
   std::vector<double> seams = {0, ray.t_max};
   for (const Component& component : medium.components()) {
     add_seams(*component.density, ray, nearest_, seams);
@@ -111,7 +115,7 @@ void RayProfile::add_cuts(std::size_t number) {
   cuts_.back().piece = number;
   double depth = 0;
   double least = piece.depth[0];
-  for (int channel = 0; channel < kChannels; ++channel) {
+  for (int channel = 0; channel < channels_.count; ++channel) {
     depth = std::max(depth, depth_within(piece, 1, channel));
     least = std::min(least, piece.depth[channel]);
   }
@@ -129,16 +133,16 @@ double RayProfile::depth_within(const Piece& piece, double s, int channel) const
     const Cubic& cubic = piece.density[k];
     const double integral =
         s * (cubic[0] + s * (cubic[1] / 2 + s * (cubic[2] / 3 + s * cubic[3] / 4)));
-    sum += integral * double(medium_.components()[k].sigma_a[channel]);
-    sum += integral * double(medium_.components()[k].sigma_s[channel]);
+    sum += integral * double(channels_.components[k].sigma_a[channel]);
+    sum += integral * double(channels_.components[k].sigma_s[channel]);
   }
   return sum * (piece.end - piece.begin);
 }
 
-std::array<double, kChannels> RayProfile::depth_at(const Piece& piece, double t) const {
+std::array<double, kMaxChannels> RayProfile::depth_at(const Piece& piece, double t) const {
   const double s = (t - piece.begin) / (piece.end - piece.begin);
-  std::array<double, kChannels> depth = piece.depth;
-  for (int channel = 0; channel < kChannels; ++channel) {
+  std::array<double, kMaxChannels> depth = piece.depth;
+  for (int channel = 0; channel < channels_.count; ++channel) {
     depth[channel] += depth_within(piece, s, channel);
   }
   return depth;
@@ -172,8 +176,8 @@ void RayProfile::visit(double begin, double end, const std::function<void(const 
         const Cubic& cubic = piece.density[k];
         at.density[k] = cubic[0] + s * (cubic[1] + s * (cubic[2] + s * cubic[3]));
       }
-      const std::array<double, kChannels> depth = depth_at(piece, at.t);
-      for (int channel = 0; channel < kChannels; ++channel) {
+      const std::array<double, kMaxChannels> depth = depth_at(piece, at.t);
+      for (int channel = 0; channel < channels_.count; ++channel) {
         at.transmittance[channel] = std::exp(-depth[channel]);
       }
       f(at);

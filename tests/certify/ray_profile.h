@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "freepath/media/medium.h"
+#include "freepath/media/medium_channels.h"
 
 namespace freepath::testing {
 
@@ -27,11 +28,13 @@ class RayProfile {
     double t = 0;
     double width = 0;  ///< Its weight in ∫ dt [world].
     std::array<double, Medium::kMaxComponents> density{};
-    std::array<double, kChannels> transmittance{};  ///< From the origin to t.
+    std::array<double, kMaxChannels> transmittance{};  ///< From the origin to t.
   };
 
+  /// @param channels of the medium's components
   /// @param interpolation kStochastic is kTrilinear in expectation
-  RayProfile(const Medium& medium, const CertifiedRay& ray, Interpolation interpolation);
+  RayProfile(const Medium& medium, const MediumChannels& channels, const CertifiedRay& ray,
+             Interpolation interpolation);
 
   /// Optical depth of the whole ray.
   double depth(int channel) const { return cuts_.back().depth[channel]; }
@@ -49,21 +52,22 @@ class RayProfile {
     double begin = 0;
     double end = 0;
     std::array<Cubic, Medium::kMaxComponents> density{};
-    std::array<double, kChannels> depth{};  ///< Of the ray up to where it begins.
+    std::array<double, kMaxChannels> depth{};  ///< Of the ray up to where it begins.
   };
   /// An end of a part that quadrature treats at once.
   struct Cut {
     double t = 0;
-    std::array<double, kChannels> depth{};
+    std::array<double, kMaxChannels> depth{};
     std::size_t piece = 0;  ///< Of the part that begins here.
   };
 
   Piece make_piece(double begin, double end) const;
   void add_cuts(std::size_t piece);
   double depth_within(const Piece& piece, double s, int channel) const;
-  std::array<double, kChannels> depth_at(const Piece& piece, double t) const;
+  std::array<double, kMaxChannels> depth_at(const Piece& piece, double t) const;
 
   const Medium& medium_;
+  const MediumChannels& channels_;
   CertifiedRay ray_;
   bool nearest_;
   std::vector<Piece> pieces_;

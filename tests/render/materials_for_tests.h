@@ -33,7 +33,7 @@ class MaterialWorld {
     add_coated();
     add_mixed();
     rgb_ = table_.in_rgb();
-    spectral_ = table_.at(sample_wavelengths<kMaxChannels>(0.3, WavelengthDensity::kVisible));
+    spectral_ = table_.at(sample_wavelengths<kMaxChannels>(0.3, WavelengthDensity::kVisible, 4));
   }
   MaterialWorld(const MaterialWorld&) = delete;
   MaterialWorld& operator=(const MaterialWorld&) = delete;
@@ -48,7 +48,7 @@ class MaterialWorld {
   /// After spectra or textures were added.
   void update() {
     rgb_ = table_.in_rgb();
-    spectral_ = table_.at(sample_wavelengths<kMaxChannels>(0.3, WavelengthDensity::kVisible));
+    spectral_ = table_.at(sample_wavelengths<kMaxChannels>(0.3, WavelengthDensity::kVisible, 4));
   }
 
   /// Gold, whose spectra give it a colour.

@@ -200,7 +200,7 @@ TEST(Furnace, DispersionLeavesTheHeroWithTheShareOfAll) {
         if (!sample) continue;
         ASSERT_EQ(sample->hero_only, sample->transmitted);
         if (!sample->transmitted) {
-          for (int c = 0; c < kMaxChannels; ++c) ASSERT_GT(sample->weight[c], 0);
+          for (int c = 0; c < context.spectra.channels(); ++c) ASSERT_GT(sample->weight[c], 0);
           continue;
         }
         refracted_once = true;
@@ -226,11 +226,11 @@ TEST(Furnace, ReflectionsOfADispersiveSurfaceAreRightInEveryChannel) {
   for (int i = 0; i < 20'000; ++i) {
     const auto sample = glass.sample(point, -on_surface(point, cosine, 0.7), random, context);
     ASSERT_TRUE(sample);
-    for (int c = 0; c < kMaxChannels; ++c) {
+    for (int c = 0; c < context.spectra.channels(); ++c) {
       reflected[c].add(sample->transmitted ? 0 : sample->weight[c]);
     }
   }
-  for (int c = 0; c < kMaxChannels; ++c) {
+  for (int c = 0; c < context.spectra.channels(); ++c) {
     const float eta = world.eta_of_flint(context)[c];
     EXPECT_TRUE(check_mean("reflectance", reflected[c],
                            fresnel_dielectric(static_cast<float>(cosine), eta)));

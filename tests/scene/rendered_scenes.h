@@ -29,6 +29,7 @@ inline const char* name_of(ColorMode mode) { return mode == ColorMode::kRgb ? "r
 struct PictureOptions {
   ColorMode mode = ColorMode::kRgb;
   uint32_t samples = 64;
+  int wavelengths = 4;  ///< Of a path in spectral mode.
   uint64_t seed = 5;
   int threads = 0;
   std::size_t batch = 2048;
@@ -48,6 +49,7 @@ struct Picture {
 inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions& options) {
   RenderSettings settings;
   settings.samples = options.samples;
+  settings.wavelengths = options.wavelengths;
   settings.threads = options.threads;
   settings.batch = options.batch;
   settings.max_scatterings = built.picture.max_scatterings;

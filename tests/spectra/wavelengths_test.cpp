@@ -69,7 +69,8 @@ TEST(Wavelengths, StayInRangeAtTheEnds) {
 }
 
 TEST(Wavelengths, UniformOnesAreRotatedByEqualDistances) {
-  const auto [lambda, pdf] = sample_wavelengths<4>(0.9, WavelengthDensity::kUniform);
+  const auto [count, lambda, pdf] = sample_wavelengths<4>(0.9, WavelengthDensity::kUniform);
+  EXPECT_EQ(count, 4U);
   EXPECT_DOUBLE_EQ(lambda[0], 360 + 0.90 * 470);
   EXPECT_NEAR(lambda[1], 360 + 0.15 * 470, 1e-9);
   EXPECT_NEAR(lambda[2], 360 + 0.40 * 470, 1e-9);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "freepath/base/error.h"
 #include "freepath/base/random.h"
 
 namespace freepath {
@@ -14,20 +15,6 @@ double van_der_corput(uint32_t index) {
   uint32_t reversed = 0;
   for (int bit = 0; bit < 32; ++bit) reversed |= (index >> bit & 1U) << (31 - bit);
   return reversed * 0x1p-32;
-}
-
-/// One of the channels alone.
-MediumChannels only(const MediumChannels& channels, int channel) {
-  MediumChannels one;
-  one.count = 1;
-  for (const ComponentChannels& component : channels.components) {
-    ComponentChannels& target = one.components.emplace_back();
-    target.sigma_a[0] = component.sigma_a[channel];
-    target.sigma_s[0] = component.sigma_s[channel];
-    target.emission[0] = component.emission[channel];
-    target.radiance.fill(component.radiance[channel]);
-  }
-  return one;
 }
 
 /// Whether one path carries channels of different extinction.
@@ -61,8 +48,12 @@ double shift_of(uint64_t seed) {
 
 }  // namespace
 
-ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, const WalkSettings& walk)
-    : scene_(scene), mode_(mode), walk_(walk) {
+ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths,
+                           const WalkSettings& walk)
+    : scene_(scene), mode_(mode), wavelengths_(wavelengths), walk_(walk) {
+  if (wavelengths < 1 || wavelengths > kMaxChannels) {
+    fail("a path carries 1 to {} wavelengths, not {}", kMaxChannels, wavelengths);
+  }
   const SpectrumValues first =
       mode == ColorMode::kRgb ? scene.spectra->in_rgb() : spectra_of_sample(0);
   for (const SceneMedium& medium : scene.media) {
@@ -112,9 +103,10 @@ void ColorFactory::make_guides() {
 }
 
 SpectrumValues ColorFactory::spectra_of_sample(uint32_t sample) const {
-  double u = shift_of(walk_.seed) + van_der_corput(sample) / kMaxChannels;
+  double u = shift_of(walk_.seed) + van_der_corput(sample) / wavelengths_;
   u -= std::floor(u);
-  return scene_.spectra->at(sample_wavelengths<kMaxChannels>(u, WavelengthDensity::kVisible));
+  return scene_.spectra->at(sample_wavelengths<kMaxChannels>(
+      u, WavelengthDensity::kVisible, static_cast<std::size_t>(wavelengths_)));
 }
 
 std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
@@ -128,7 +120,7 @@ std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
     result->walkers.emplace_back(*result->bound.medium, channels, settings);
   } else {
     for (int c = 0; c < channels.count; ++c) {
-      result->walkers.emplace_back(*result->bound.medium, only(channels, c), settings);
+      result->walkers.emplace_back(*result->bound.medium, channels.only(c), settings);
     }
   }
   return result;

@@ -26,14 +26,15 @@ struct PathColors {
 
 /// Makes colours for the samples of a scene. In R, G, B all samples share them. In spectral mode a
 /// sample of every pixel has the same wavelengths: the first channel's run through a van der Corput
-/// sequence over a quarter of the spectrum's probability, shifted by the seed, and the others
+/// sequence over 1/N of the spectrum's probability, shifted by the seed, and the others
 /// follow at equal distances of probability [Wilkie14]. So the wavelengths of 2^k samples are
 /// equidistant, and pictures have next to no noise of colour.
 class ColorFactory {
  public:
   /// @param scene must outlive this
   /// @throws Error as Walker
-  ColorFactory(const PathScene& scene, ColorMode mode, const WalkSettings& walk);
+  /// @param wavelengths of a path in spectral mode, 1 to kMaxChannels
+  ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths, const WalkSettings& walk);
 
   std::shared_ptr<const PathColors> colors_of_sample(uint32_t sample) const;
 
@@ -60,6 +61,7 @@ class ColorFactory {
 
   const PathScene& scene_;
   ColorMode mode_;
+  int wavelengths_;
   WalkSettings walk_;
   int paths_per_sample_ = 1;
   bool depends_on_sample_ = false;

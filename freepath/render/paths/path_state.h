@@ -15,8 +15,8 @@ namespace freepath {
 
 /// A path, and the ray that it flies on.
 struct ScenePath {
-  Vec3f origin;     ///< Of its ray [world, relative to the scene's origin].
-  Vec3f direction;  ///< Of its ray, unit [world].
+  Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
+  Vec3f direction{0};  ///< Of its ray, unit [world].
   /// Where the ray ends at a surface, once that is known.
   std::optional<SurfaceHit> hit;
   bool surfaces_known = false;
@@ -30,7 +30,7 @@ struct ScenePath {
   /// lights, whose integral over all wavelengths is known.
   Channels rgb;
 
-  Vec3f scattered_from;  ///< Where the direction was drawn.
+  Vec3f scattered_from{0};  ///< Where the direction was drawn.
   float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
   float emission_share = 1;

@@ -40,8 +40,8 @@ Channels thermal_radiance(double temperature, const SpectrumValues& spectra) {
   Channels radiance;
   if (!(temperature > kCoolest)) return radiance;
   const BlackbodySpectrum body(temperature, BlackbodyScale::kPeak);
-  if (spectra.channels() == kMaxChannels) {
-    for (int i = 0; i < kMaxChannels; ++i) {
+  if (spectra.is_spectral()) {
+    for (int i = 0; i < spectra.channels(); ++i) {
       radiance[i] = static_cast<float>(kMediumRadiance * body(spectra.wavelengths()[i]));
     }
     return radiance;

@@ -33,7 +33,7 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   const PixelWindow window =
       pixel_window(settings.crop, scene.camera->width(), scene.camera->height());
   RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
-  const ColorFactory factory(scene, mode, settings.walk);
+  const ColorFactory factory(scene, mode, settings.wavelengths, settings.walk);
   SceneSetup setup;
   setup.scene = &scene;
   setup.factory = &factory;

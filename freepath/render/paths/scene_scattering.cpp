@@ -11,8 +11,16 @@ constexpr float kShadowLength = 1 - 1e-4F;
 }  // namespace
 
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
+  if (!setup_.factory->sees_rgb() || path.is_coloured) return false;
   const Channels& c = path.throughput;
-  return setup_.factory->sees_rgb() && !path.is_coloured && c == Channels(c[0]);
+  for (int i = 1; i < path.colors->spectra.channels(); ++i) {
+    if (c[i] != c[0]) return false;
+  }
+  return true;
+}
+
+Channels SceneWavefront::light_throughput(const ScenePath& path, bool in_rgb) {
+  return in_rgb ? Channels(path.throughput[0]) : path.throughput;
 }
 
 const SpectrumValues& SceneWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
@@ -47,7 +55,7 @@ void SceneWavefront::meet_surface(std::size_t slot) {
             : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction, spectra),
                         0};
     const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-    (in_rgb ? path.rgb : path.radiance) += path.throughput * light.radiance * share;
+    (in_rgb ? path.rgb : path.radiance) += light_throughput(path, in_rgb) * light.radiance * share;
   }
   if (!shape.material) {
     const SurfaceHit crossed = hit;  // which goes with the ray
@@ -154,7 +162,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
       // The phase function is its own density.
       const float value = phase.evaluate(path.direction, light.direction);
       const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
-      const Channels radiance = path.throughput * light.radiance * share;
+      const Channels radiance = light_throughput(path, in_rgb) * light.radiance * share;
       if (!is_black(radiance)) {
         shadows_.add(static_cast<uint32_t>(slot), position, light.direction,
                      light.distance * kShadowLength, path.medium, radiance, in_rgb);

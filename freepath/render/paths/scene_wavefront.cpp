@@ -219,7 +219,7 @@ void SceneWavefront::escape(ScenePath& path) {
       scene_.lights->escape(path.scattered_from, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-  const Channels seen = path.throughput * light.radiance * share;
+  const Channels seen = light_throughput(path, in_rgb) * light.radiance * share;
   if (layers_.on() && path.scatterings == 0) {
     layers_.background(path.result,
                        rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
@@ -247,7 +247,7 @@ Spectrum SceneWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
 Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
   const SpectrumValues& spectra = path.colors->spectra;
   const Channels& t = path.throughput;
-  if (spectra.channels() == kChannels) return {t[0], t[1], t[2]};
+  if (!spectra.is_spectral()) return {t[0], t[1], t[2]};
   return to_spectrum(spectra.to_rgb(t * spectra.illuminant(Vec3f(1))));
 }
 

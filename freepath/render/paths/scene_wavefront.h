@@ -62,6 +62,8 @@ class SceneWavefront {
   /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
   bool sees_rgb(const ScenePath& path) const;
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
+  /// A path's throughput in the channels of these spectra.
+  static Channels light_throughput(const ScenePath& path, bool in_rgb);
   void escape(ScenePath& path);
   void meet_surface(std::size_t slot);
   void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
