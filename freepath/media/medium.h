@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "freepath/base/channels.h"
 #include "freepath/base/spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/media/field.h"
@@ -47,7 +48,8 @@ struct AffineMap {
 /// serves all. Others are aimed at one by one, by an affine map each.
 class Medium {
  public:
-  static constexpr int kMaxComponents = 8;
+  /// A grid of spectra has two for each channel of a path: what it absorbs and what it scatters.
+  static constexpr int kMaxComponents = 2 * kMaxChannels;
 
   /// @param components at least one; all of voxels, or all computed with the same cells
   /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic

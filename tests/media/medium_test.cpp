@@ -81,10 +81,11 @@ TEST(Medium, RefusesCoefficientsWhoseSumOrProductOverflows) {
             "negative");
 }
 
-TEST(Medium, HasOneToEightComponents) {
-  EXPECT_EQ(complaint({}), "a medium has 1 to 8 components, not 0");
-  EXPECT_EQ(complaint(std::vector<Component>(8, plain())), "");
-  EXPECT_EQ(complaint(std::vector<Component>(9, plain())), "a medium has 1 to 8 components, not 9");
+TEST(Medium, HasOneToSixteenComponents) {
+  EXPECT_EQ(complaint({}), "a medium has 1 to 16 components, not 0");
+  EXPECT_EQ(complaint(std::vector<Component>(16, plain())), "");
+  EXPECT_EQ(complaint(std::vector<Component>(17, plain())),
+            "a medium has 1 to 16 components, not 17");
 }
 
 TEST(Medium, RefusesFieldsWithoutVoxels) {
