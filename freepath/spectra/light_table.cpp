@@ -1,7 +1,6 @@
 #include "freepath/spectra/light_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "freepath/spectra/reflectance_table.h"
@@ -15,20 +14,19 @@ constexpr std::size_t kAllCells = std::size_t{3} * kCells * kCells;
 /// A reflectance of half the table's range: of half the largest component.
 constexpr double kHalf = 0.5;
 
-bool is_grey(const Vec3f& rgb) { return rgb.x == rgb.y && rgb.y == rgb.z; }
+/// Below it 1 / x would leave the floats.
+constexpr float kBlack = 1e-30F;
 
-/// Weights of a parabola's values at 0, 1/2 and 1.
-std::array<float, 3> parabola(float x) {
-  return {(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)};
-}
+bool is_grey(const Vec3f& rgb) { return rgb.x == rgb.y && rgb.y == rgb.z; }
 
 }  // namespace
 
 /// Colours between four nodes.
 struct LightTable::Cell {
   std::array<std::array<float, 3>, 4> polynomials;  ///< At (0, 0), (1, 0), (0, 1), (1, 1).
-  /// Colours of the spectra for a largest component of 1, at x, y = 0, 1/2, 1; x fastest.
-  std::array<Vec3f, 9> colours;
+  /// The colours of the spectra for a largest component of 1: coefficients of 1, x, y, xy, x², y².
+  /// The fourth number fills the lanes.
+  std::array<std::array<float, 4>, 6> colours;
 
   std::array<float, 3> polynomial(float x, float y) const {
     std::array<float, 3> c;
@@ -39,11 +37,6 @@ struct LightTable::Cell {
     return c;
   }
 };
-
-float LightTable::Light::operator()(float u) const {
-  const float x = (c[0] * u + c[1]) * u + c[2];
-  return scale * (0.5F + 0.5F * x / std::sqrt(1 + x * x));
-}
 
 LightTable::LightTable(const RgbColorSpace& space)
     : space_(space), cells_(std::make_unique<std::atomic<const Cell*>[]>(kAllCells)) {
@@ -61,6 +54,38 @@ LightTable::~LightTable() {
   for (std::size_t i = 0; i < kAllCells; ++i) delete cells_[i].load();
 }
 
+void LightTable::set_colours(Cell& cell) const {
+  std::array<std::array<Vec3d, 3>, 3> seen;  // at y, x = 0, 1/2, 1
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      const Light light{
+          2, cell.polynomial(0.5F * static_cast<float>(column), 0.5F * static_cast<float>(row))};
+      Vec3d& sum = seen[row][column];
+      sum = Vec3d(0);
+      for (const SeenWavelength& one : wavelengths_) sum += Vec3d(one.rgb * light(one.u));
+    }
+  }
+  // The bilinear part goes through the corners; bulges 4 h x(1 - x) have the mean height h of their
+  // three parallels. What is left is of third order.
+  Vec3d across(0);
+  Vec3d down(0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    across += (seen[i][1] - (seen[i][0] + seen[i][2]) * 0.5) * (4.0 / 3);
+    down += (seen[1][i] - (seen[0][i] + seen[2][i]) * 0.5) * (4.0 / 3);
+  }
+  const Vec3d& origin = seen[0][0];
+  const std::array<Vec3d, 6> coefficients = {origin,
+                                             seen[0][2] - origin + across,
+                                             seen[2][0] - origin + down,
+                                             seen[2][2] - seen[0][2] - seen[2][0] + origin,
+                                             -across,
+                                             -down};
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const Vec3f c(coefficients[i]);
+    cell.colours[i] = {c.x, c.y, c.z, 0};
+  }
+}
+
 const LightTable::Cell* LightTable::make_cell(int largest, int column, int row) const {
   auto cell = std::make_unique<Cell>();
   for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -73,13 +98,7 @@ const LightTable::Cell* LightTable::make_cell(int largest, int column, int row) 
       cell->polynomials[corner][i] = static_cast<float>(polynomial.c[i]);
     }
   }
-  for (std::size_t place = 0; place < 9; ++place) {
-    const Light light{2, cell->polynomial(0.5F * static_cast<float>(place % 3),
-                                          0.5F * static_cast<float>(place / 3))};
-    Vec3d sum(0);
-    for (const SeenWavelength& seen : wavelengths_) sum += Vec3d(seen.rgb * light(seen.u));
-    cell->colours[place] = Vec3f(sum);
-  }
+  set_colours(*cell);
   std::atomic<const Cell*>& home = cells_[(largest * kCells + row) * kCells + column];
   const Cell* present = nullptr;
   // Where another thread was faster, its cell is the same and stays.
@@ -89,11 +108,12 @@ const LightTable::Cell* LightTable::make_cell(int largest, int column, int row) 
   return present;
 }
 
-LightTable::Place LightTable::place_of(const Vec3f& rgb, float size) const {
+inline LightTable::Place LightTable::place_of(const Vec3f& rgb, float size) const {
   // Of equal components the last is the largest, as in ReflectanceTable.
   const int largest = rgb.z >= size ? 2 : rgb.y >= size ? 1 : 0;
-  const float x = rgb[(largest + 1) % 3] / size * kCells;
-  const float y = rgb[(largest + 2) % 3] / size * kCells;
+  const float scale = kCells / size;
+  const float x = rgb[largest == 2 ? 0 : largest + 1] * scale;
+  const float y = rgb[largest == 0 ? 2 : largest - 1] * scale;
   // Written so that a NaN has a cell too.
   const int column = x < kCells - 1 ? static_cast<int>(x) : kCells - 1;
   const int row = y < kCells - 1 ? static_cast<int>(y) : kCells - 1;
@@ -105,22 +125,25 @@ LightTable::Place LightTable::place_of(const Vec3f& rgb, float size) const {
 
 LightTable::Light LightTable::light(const Vec3f& rgb) const {
   const float size = std::max({rgb.x, rgb.y, rgb.z});
+  if (size < kBlack) return {};
   if (is_grey(rgb)) return {2 * size, {}};
   const Place place = place_of(rgb, size);
   return {2 * size, place.cell->polynomial(place.x, place.y)};
 }
 
 Vec3f LightTable::seen(const Vec3f& rgb) const {
-  if (is_grey(rgb)) return rgb;
   const float size = std::max({rgb.x, rgb.y, rgb.z});
+  if (size < kBlack) return Vec3f(0);
+  if (is_grey(rgb)) return rgb;
   const Place place = place_of(rgb, size);
-  const std::array<float, 3> columns = parabola(place.x);
-  const std::array<float, 3> rows = parabola(place.y);
-  Vec3f sum(0);
-  for (std::size_t i = 0; i < 9; ++i) {
-    sum += place.cell->colours[i] * (columns[i % 3] * rows[i / 3]);
+  const float x = place.x;
+  const float y = place.y;
+  const auto& c = place.cell->colours;
+  std::array<float, 4> sum;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum[i] = c[0][i] + (c[1][i] + c[3][i] * y + c[4][i] * x) * x + (c[2][i] + c[5][i] * y) * y;
   }
-  return sum * size;
+  return Vec3f(sum[0], sum[1], sum[2]) * size;
 }
 
 }  // namespace freepath

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -31,14 +32,18 @@ class LightTable {
     std::array<float, 3> c = {};
 
     /// @param u of the wavelength: SigmoidPolynomial::coordinate
-    float operator()(float u) const;
+    float operator()(float u) const {
+      const float x = (c[0] * u + c[1]) * u + c[2];
+      return scale * (0.5F + 0.5F * x / std::sqrt(1 + x * x));
+    }
   };
 
+  /// Below 1e-30 it is black.
   /// @param rgb finite and not negative
   Light light(const Vec3f& rgb) const;
 
   /// The colour that the observer sees of `light`, in R, G, B of the space: the given one but for
-  /// the interpolation of the table. Greys come back exactly.
+  /// the interpolation of the table. Greys come back exactly, and what is below 1e-30 is black.
   /// @param rgb finite and not negative
   Vec3f seen(const Vec3f& rgb) const;
 
@@ -52,6 +57,7 @@ class LightTable {
 
   Place place_of(const Vec3f& rgb, float size) const;
   const Cell* make_cell(int largest, int column, int row) const;
+  void set_colours(Cell& cell) const;
 
   /// What the observer sees of a wavelength under the illuminant of the space.
   struct SeenWavelength {

@@ -190,7 +190,7 @@ TEST(LightTable, KnowsTheColourOfItsSpectra) {
 
 TEST(LightTable, ReturnsColoursOfAnySizeAndNeverNaN) {
   const LightTable table(srgb());
-  for (const float size : {1e-44F, 1e-38F, 1e-20F, 1.0F, 1e30F}) {
+  for (const float size : {1e-20F, 1.0F, 1e30F}) {
     for (const Vec3f& direction : {Vec3f(1, 0, 0), Vec3f(0, 1, 1), Vec3f(0.2F, 0.4F, 0.9F)}) {
       const Vec3f rgb = direction * size;
       const Vec3f found = table.seen(rgb);
@@ -201,8 +201,10 @@ TEST(LightTable, ReturnsColoursOfAnySizeAndNeverNaN) {
       }
     }
   }
-  EXPECT_EQ(table.seen(Vec3f(0)), Vec3f(0));
-  EXPECT_EQ(table.light(Vec3f(0))(0.5F), 0);
+  for (const Vec3f& rgb : {Vec3f(0), Vec3f(0, 0, 1e-44F), Vec3f(1e-32F, 0, 0)}) {
+    EXPECT_EQ(table.seen(rgb), Vec3f(0));
+    EXPECT_EQ(table.light(rgb)(0.5F), 0);
+  }
 }
 
 TEST(LightTable, IsTheSameForHoweverManyAsk) {
