@@ -15,9 +15,10 @@ namespace freepath {
 /// reads them: a table for each component that may be the largest, of 64³ colours, between which
 /// the coefficients of the polynomials are interpolated [Jakob19].
 ///
-/// So a spectrum has not quite the colour it was made of: 0.05 % of the largest component is
-/// typical, and near a component of 1, or where the largest is below 0.01, several percent can be
-/// missing. In return two renderers that use the table show the same.
+/// So a spectrum has not quite the colour it was made of. It is off by 0.03 % of the largest
+/// component on average, 0.25 % at most, where that is between 0.2 and 0.9; in the dark, where
+/// slices are a factor apart, by 0.3 % at 0.1, 1 % at 0.03 and 6 % at 0.002. In return two
+/// renderers that use the table show the same.
 ///
 /// Nodes are fitted when they are first needed: all of them would take seconds. A node depends on
 /// nothing but its place, so that neither the order of requests nor threads change a spectrum.

@@ -103,6 +103,22 @@ TEST(ReflectanceTable, ColoursComeBackButForWhatItInterpolates) {
   EXPECT_LT(sum / static_cast<double>(colours.size()), 0.0005);
 }
 
+/// Between slices of the table, which are a factor apart in the dark, little of a colour is lost in
+/// the middle and much at the dark end.
+TEST(ReflectanceTable, DarkColoursAreOffAsTheSlicesOfTheTableAreApart) {
+  struct Band {
+    double size, most;
+  };
+  for (const Band& band : {Band{0.1, 0.01}, Band{0.03, 0.03}, Band{0.002, 0.12}}) {
+    for (const Vec3d& colour : random_colours(50, 0, band.size)) {
+      const double size = std::max({colour.x, colour.y, colour.z});
+      const Vec3d rgb = colour * (band.size / size);
+      const Vec3d found = seen(srgb().reflectances()(rgb), srgb());
+      EXPECT_LT(largest_difference(found, rgb), band.most * band.size) << rgb;
+    }
+  }
+}
+
 /// Means of pictures of pbrt-v4 where such a light is seen directly, relative to the colour given,
 /// with a standard error of 4e-5.
 TEST(ReflectanceTable, IsOffWhereAndAsMuchAsThePublishedTable) {
