@@ -7,6 +7,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/spectra/illuminants.h"
+#include "freepath/spectra/reflectance_table.h"
 
 namespace freepath {
 namespace {
@@ -60,7 +61,10 @@ RgbColorSpace::RgbColorSpace(std::string name, const RgbPrimaries& primaries,
       white_(chromaticity_of(observe(illuminant_))),
       rgb_to_xyz_(rgb_to_xyz_matrix(primaries_, white_)),
       xyz_to_rgb_(rgb_to_xyz_.inverse(true)),
-      weights_(reflectance_weights_of(illuminant_, xyz_to_rgb_)) {}
+      weights_(reflectance_weights_of(illuminant_, xyz_to_rgb_)),
+      reflectances_(std::make_unique<const ReflectanceTable>(*this)) {}
+
+RgbColorSpace::~RgbColorSpace() = default;
 
 std::span<const std::string_view> rgb_color_space_names() { return kNames; }
 

@@ -4,6 +4,7 @@
 #include <Imath/ImathMatrix.h>
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,8 @@ namespace freepath {
 
 /// For vectors as rows, as all matrices of the project: `xyz = rgb * rgb_to_xyz`.
 using Matrix3d = Imath::M33d;
+
+class ReflectanceTable;
 
 /// Chromaticities of the three colours that a space mixes.
 struct RgbPrimaries {
@@ -30,6 +33,8 @@ Matrix3d rgb_to_xyz_matrix(const RgbPrimaries& primaries, const Chromaticity& wh
 /// Its white point is the chromaticity of that illuminant as the observer here sees it, which
 /// differs from that of the standards by about 0.0001: so a grey surface under the
 /// illuminant has exactly equal R, G and B.
+///
+/// It stays where it is, since spectra refer to the space of their colour.
 class RgbColorSpace {
  public:
   /// Wavelengths of the quadrature that fits spectra to colours: every 2 nm.
@@ -38,6 +43,9 @@ class RgbColorSpace {
 
   /// @param illuminant any scale
   RgbColorSpace(std::string name, const RgbPrimaries& primaries, const LinearSpectrum& illuminant);
+  ~RgbColorSpace();
+  RgbColorSpace(const RgbColorSpace&) = delete;
+  RgbColorSpace& operator=(const RgbColorSpace&) = delete;
 
   const std::string& name() const { return name_; }
   const RgbPrimaries& primaries() const { return primaries_; }
@@ -54,6 +62,9 @@ class RgbColorSpace {
   /// r under the illuminant: exact for an r that is linear between those wavelengths.
   std::span<const Vec3d, kNodes> reflectance_weights() const { return weights_; }
 
+  /// The smooth reflectances that have the colours of the space.
+  const ReflectanceTable& reflectances() const { return *reflectances_; }
+
  private:
   std::string name_;
   RgbPrimaries primaries_;
@@ -61,6 +72,7 @@ class RgbColorSpace {
   Chromaticity white_;
   Matrix3d rgb_to_xyz_, xyz_to_rgb_;
   std::array<Vec3d, kNodes> weights_;
+  std::unique_ptr<const ReflectanceTable> reflectances_;
 };
 
 /// The spaces that are known: "srgb" (IEC 61966-2-1, primaries of Rec. 709), "dci-p3" (P3 primaries

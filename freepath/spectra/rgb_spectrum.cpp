@@ -6,16 +6,10 @@
 #include <limits>
 
 #include "freepath/base/error.h"
+#include "freepath/spectra/reflectance_table.h"
 
 namespace freepath {
 namespace {
-
-/// u of [nm]: from -1 to 1, where the monomials are of one size and the fit is well conditioned.
-double coordinate_of(double wavelength) {
-  constexpr double kMiddle = 0.5 * (kShortestWavelength + kLongestWavelength);
-  constexpr double kHalf = 0.5 * (kLongestWavelength - kShortestWavelength);
-  return (wavelength - kMiddle) / kHalf;
-}
 
 double sigmoid(double x) {
   if (std::isinf(x)) return x > 0 ? 1 : 0;
@@ -76,8 +70,14 @@ bool is_nonnegative(const Vec3d& rgb) {
 
 }  // namespace
 
+double SigmoidPolynomial::coordinate(double wavelength) {
+  constexpr double kMiddle = 0.5 * (kShortestWavelength + kLongestWavelength);
+  constexpr double kHalf = 0.5 * (kLongestWavelength - kShortestWavelength);
+  return (wavelength - kMiddle) / kHalf;
+}
+
 double SigmoidPolynomial::operator()(double wavelength) const {
-  const double u = coordinate_of(wavelength);
+  const double u = coordinate(wavelength);
   return sigmoid((c[0] * u + c[1]) * u + c[2]);
 }
 
@@ -115,7 +115,7 @@ SigmoidPolynomial fit_reflectance(const Vec3d& rgb, const RgbColorSpace& space) 
 }
 
 RgbSpectrum RgbSpectrum::reflectance(const Vec3d& rgb, const RgbColorSpace& space) {
-  return {fit_reflectance(rgb, space), 1};
+  return {space.reflectances()(rgb), 1, rgb, space};
 }
 
 RgbSpectrum RgbSpectrum::unbounded(const Vec3d& rgb, const RgbColorSpace& space) {
@@ -123,13 +123,13 @@ RgbSpectrum RgbSpectrum::unbounded(const Vec3d& rgb, const RgbColorSpace& space)
     fail("RGB has to be finite and not negative, not ({}, {}, {})", rgb.x, rgb.y, rgb.z);
   }
   const double scale = 2 * std::max({rgb.x, rgb.y, rgb.z});
-  if (scale == 0) return {{}, 0};
-  return {fit_reflectance(rgb / scale, space), scale};
+  if (scale == 0) return {{}, 0, rgb, space};
+  return {space.reflectances()(rgb / scale), scale, rgb, space};
 }
 
 RgbSpectrum RgbSpectrum::illuminant(const Vec3d& rgb, const RgbColorSpace& space) {
   RgbSpectrum result = unbounded(rgb, space);
-  result.illuminant_ = space.illuminant();
+  result.is_light_ = true;
   return result;
 }
 

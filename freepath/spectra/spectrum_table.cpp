@@ -30,8 +30,8 @@ Channels to_channels(const std::array<double, kMaxChannels>& values) {
   return channels;
 }
 
-Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
-                const RgbColorSpace& space) {
+Channels seen_rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
+                     const RgbColorSpace& space) {
   if (role == SpectrumRole::kIndex) return Channels(static_cast<float>(spectrum(kSodiumLine)));
   if (std::holds_alternative<ConstantSpectrum>(spectrum.kind()) &&
       role == SpectrumRole::kReflectance) {
@@ -42,7 +42,31 @@ Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
                                                         : space.from_xyz(observe(spectrum)));
 }
 
+bool same_white(const RgbColorSpace& a, const RgbColorSpace& b) {
+  return a.white().x == b.white().x && a.white().y == b.white().y;
+}
+
+/// What a spectrum is in R, G, B: the colour that it was made of, if it was made of one. Only its
+/// spectrum says what a surface looks like under another white.
+Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
+                const RgbColorSpace& space) {
+  const auto* const made = std::get_if<RgbSpectrum>(&spectrum.kind());
+  const bool light = role == SpectrumRole::kIlluminant;
+  if (made == nullptr || role == SpectrumRole::kIndex || made->is_light() != light) {
+    return seen_rgb_of(spectrum, role, space);
+  }
+  const Vec3d rgb = made->rgb() * spectrum.factor();
+  if (&made->space() == &space || made->is_constant()) return to_channels(rgb);
+  if (!light && !same_white(made->space(), space)) return seen_rgb_of(spectrum, role, space);
+  return to_channels(space.from_xyz(made->space().to_xyz(rgb)));
+}
+
 const RgbColorSpace& texture_space() { return rgb_color_space("srgb"); }
+
+const LightTable& texture_lights() {
+  static const LightTable kLights(texture_space());
+  return kLights;
+}
 
 }  // namespace
 
@@ -60,7 +84,8 @@ float SpectrumValues::value_of(const SpectralDistribution& spectrum, SpectrumRol
 }
 
 SpectrumId SpectrumTable::add(const SpectralDistribution& spectrum, SpectrumRole role) {
-  entries_.push_back({spectrum, role, rgb_of(spectrum, role, space_)});
+  entries_.push_back(
+      {spectrum, role, rgb_of(spectrum, role, space_), seen_rgb_of(spectrum, role, space_)});
   return {static_cast<uint32_t>(entries_.size() - 1)};
 }
 
@@ -83,14 +108,20 @@ SpectrumValues SpectrumTable::in_rgb() const {
   for (int i = 0; i < 3; ++i) {
     Vec3d unit(0);
     unit[i] = 1;
-    values.reflectance_basis_[i] = values.illuminant_basis_[i] =
-        to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
+    values.reflectance_basis_[i] = to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
     values.to_rgb_[i] = Vec3f(unit);
   }
   // Times channels that are 0, but must not be NaN.
   std::fill(values.to_rgb_.begin() + 3, values.to_rgb_.end(), Vec3f(0));
   values.channels_ = 3;
   values.space_ = &space_;
+  return values;
+}
+
+SpectrumValues SpectrumTable::seen_in_rgb() const {
+  SpectrumValues values = in_rgb();
+  for (std::size_t i = 0; i < entries_.size(); ++i) values.values_[i] = entries_[i].seen;
+  values.lights_ = &texture_lights();
   return values;
 }
 
@@ -113,13 +144,15 @@ SpectrumValues SpectrumTable::at(const PathWavelengths& wavelengths) const {
     const double mix[3] = {red, green, blue};
     for (int c = 0; c < 3; ++c) {
       values.reflectance_basis_[c][i] = static_cast<float>(mix[c]);
-      values.illuminant_basis_[c][i] = static_cast<float>(mix[c] * white(lambda));
     }
+    values.white_[i] = static_cast<float>(white(lambda));
+    values.coordinates_[i] = static_cast<float>(SigmoidPolynomial::coordinate(lambda));
     const Vec3d xyz =
         color_matching(lambda) /
         (wavelengths.pdf[i] * static_cast<double>(values.channels_) * kLuminousIntegral);
     values.to_rgb_[i] = Vec3f(space_.from_xyz(xyz));
   }
+  values.lights_ = &texture_lights();
   values.wavelengths_ = wavelengths.lambda;
   values.space_ = &space_;
   return values;

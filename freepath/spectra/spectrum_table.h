@@ -8,6 +8,7 @@
 
 #include "freepath/base/channels.h"
 #include "freepath/base/vector.h"
+#include "freepath/spectra/light_table.h"
 #include "freepath/spectra/rgb_color_space.h"
 #include "freepath/spectra/spectral_distribution.h"
 #include "freepath/spectra/wavelengths.h"
@@ -39,10 +40,16 @@ class SpectrumValues {
 
   /// A colour of a texture (sRGB's primaries, linear) as a reflectance or coefficient: a mixture of
   /// three basis spectra, whose colour comes back exactly. One multiplication per channel and
-  /// component, where the smooth fit (RgbSpectrum) would take microseconds.
+  /// component, where the smooth fit (RgbSpectrum) would take a table of all three dimensions.
   Channels reflectance(const Vec3f& rgb) const { return mix(reflectance_basis_, rgb); }
-  /// A colour of a texture as emitted light.
-  Channels illuminant(const Vec3f& rgb) const { return mix(illuminant_basis_, rgb); }
+  /// A colour of an image (sRGB's primaries, linear) as emitted light: what RgbSpectrum::illuminant
+  /// is of it, or in R, G, B the colour itself or what is seen of that spectrum.
+  /// @param rgb finite and not negative
+  Channels illuminant(const Vec3f& rgb) const {
+    if (!lights_) return mix(reflectance_basis_, rgb);
+    if (!is_spectral()) return mix(reflectance_basis_, lights_->seen(rgb));
+    return light(lights_->light(rgb));
+  }
 
   /// Channels that are in use: 3 of R, G, B, or one for each wavelength. All others are 0.
   int channels() const { return channels_; }
@@ -71,10 +78,17 @@ class SpectrumValues {
   static Channels mix(const std::array<Channels, 3>& basis, const Vec3f& rgb) {
     return basis[0] * rgb.x + basis[1] * rgb.y + basis[2] * rgb.z;
   }
+  Channels light(const LightTable::Light& light) const {
+    Channels result;
+    for (int i = 0; i < channels_; ++i) result[i] = light(coordinates_[i]);
+    return result * white_;
+  }
 
   std::vector<Channels> values_;
   std::array<Channels, 3> reflectance_basis_;
-  std::array<Channels, 3> illuminant_basis_;
+  const LightTable* lights_ = nullptr;  // null where colours stay as they are given
+  Channels white_;                      // of the spectra of lights
+  Channels coordinates_;                // u of the wavelengths, as SigmoidPolynomial has it
   std::array<Vec3f, kMaxChannels> to_rgb_;
   std::array<double, kMaxChannels> wavelengths_{};
   int channels_ = 3;
@@ -95,8 +109,11 @@ class SpectrumTable {
   /// Whether an index of refraction has the same value at all wavelengths.
   bool is_constant(SpectrumId id) const;
 
-  /// In R, G, B.
+  /// In R, G, B, where a colour is exactly what it was given as.
   SpectrumValues in_rgb() const;
+  /// In R, G, B as the observer sees the spectra that `at` gives: their means over wavelengths,
+  /// which differ from the given colours by what the table of spectra interpolates.
+  SpectrumValues seen_in_rgb() const;
   /// At wavelengths.
   SpectrumValues at(const PathWavelengths& wavelengths) const;
 
@@ -104,7 +121,8 @@ class SpectrumTable {
   struct Entry {
     SpectralDistribution spectrum;
     SpectrumRole role = SpectrumRole::kReflectance;
-    Channels rgb;
+    Channels rgb;   ///< As given.
+    Channels seen;  ///< As the spectrum is seen.
   };
 
   const RgbColorSpace& space_;

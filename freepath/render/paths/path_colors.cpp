@@ -80,13 +80,14 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
               });
   rgb_ = mode == ColorMode::kRgb
              ? make(first)
-             : std::make_shared<const PathColors>(PathColors{scene.spectra->in_rgb(), {}});
+             : std::make_shared<const PathColors>(PathColors{scene.spectra->seen_in_rgb(), {}});
   make_guides();
 }
 
 void ColorFactory::make_guides() {
   // What is made for R, G and B serves any wavelengths: a guide need not be exact, and where it
   // does not lead, paths still go.
+  const SpectrumValues rgb = scene_.spectra->in_rgb();
   for (std::size_t i = 0; i < scene_.media.size(); ++i) {
     std::unique_ptr<const EmissionGuide>& guide = guides_.emplace_back();
     const std::shared_ptr<const MediumWalkers>& walkers = constant_[i];
@@ -96,7 +97,7 @@ void ColorFactory::make_guides() {
     }
     const bool has_rgb = walkers && mode_ == ColorMode::kRgb;
     guide = std::make_unique<const EmissionGuide>(
-        has_rgb ? walkers->bound : scene_.media[i].bind(rgb_->spectra), scene_.origin);
+        has_rgb ? walkers->bound : scene_.media[i].bind(rgb), scene_.origin);
     glow_is_spread_.push_back(is_spread(guide->cells(), scene_.media[i]));
     if (!(guide->power() > 0)) guide.reset();
   }

@@ -46,7 +46,8 @@ class ColorFactory {
   const EmissionGuide* guide(std::size_t medium) const { return guides_[medium].get(); }
   /// Whether so much of a medium glows that a guide costs more than it gives.
   bool glow_is_spread(std::size_t medium) const { return glow_is_spread_[medium]; }
-  /// R, G, B of the scene's spectra.
+  /// R, G, B of the scene's spectra: as given where R, G, B is rendered, else as the observer sees
+  /// the spectra, so that light may be seen in both ways.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
   /// Whether paths without colour may see lights in R, G, B: wavelengths are rendered, and no
   /// medium tells them apart.
