@@ -76,7 +76,7 @@ void expect_phase(const std::string& words, const Phase& phase) {
   for (const double cosine : {-0.95, -0.4, 0.2, 0.7, 0.97}) {
     const double expected = scattered_once(phase, cosine);
     for (const ColorMode mode : kColorModes) {
-      const uint32_t samples = mode == ColorMode::kRgb ? 192 : 512;
+      const uint32_t samples = mode == ColorMode::kRgb ? 384 : 512;
       expect_mean(fmt::format("{} at {} {}", words, cosine, name_of(mode)),
                   render_text(lit_column(words, cosine), {.mode = mode, .samples = samples}),
                   {expected, expected, expected},

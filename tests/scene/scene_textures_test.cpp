@@ -1,5 +1,5 @@
-// Textures as they are seen on a plane under a sky of radiance 1, where each place has the radiance
-// of its reflectance.
+// Textures as they are seen on a plane in parallel light of irradiance pi, where each place has the
+// radiance of its reflectance.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ std::string textured(const std::string& textures, const std::string& material, i
   return "Integrator \"volpath\" \"integer maxdepth\" 1\n" + film(pixels) +
          "Scale -1 1 1\nLookAt .5 .5 3  .5 .5 0  0 1 0\n"  // with x to the right
          "Camera \"orthographic\" \"float screenwindow\" [ -.5 .5 -.5 .5 ]\nWorldBegin\n"
-         "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" +
+         "LightSource \"distant\" \"rgb L\" [ 1 1 1 ] \"float scale\" 3.14159265 "
+         "\"point3 from\" [ 0 0 1 ] \"point3 to\" [ 0 0 0 ]\n" +
          textures + "\n" + material +
          " Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0  1 1 0 ]\n";
 }
@@ -29,7 +30,7 @@ const std::string kReflectance = R"(Material "diffuse" "texture reflectance" "t"
 /// Every pixel, row by row from the top.
 void expect_pixels(const std::string& name, const std::string& scene, int pixels,
                    const std::vector<Vec3d>& expected) {
-  const Picture picture = render_text(scene, {.samples = 8192});
+  const Picture picture = render_text(scene, {.samples = 20000});
   expect_sound(picture);
   ASSERT_EQ(expected.size(), picture.image.pixel_count());
   const char* const names[] = {"R", "G", "B"};
@@ -39,8 +40,8 @@ void expect_pixels(const std::string& name, const std::string& scene, int pixels
     for (int i = 0; i < pixels * pixels; ++i) {
       const float* const pixel = picture.image.pixel(i % pixels, i / pixels);
       EXPECT_TRUE(check_mean(fmt::format("{} {} of pixel {}", name, names[c], i), pixel[value],
-                             std::sqrt(pixel[variance]), 8192, expected[i][c],
-                             {.absolute = 1e-4, .largest_relative_error = 0.01}));
+                             std::sqrt(pixel[variance]), 20000, expected[i][c],
+                             {.absolute = 1e-4, .largest_relative_error = 0.0025}));
     }
   }
 }
