@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "tests/scene/rendered_scenes.h"
 
@@ -35,11 +36,15 @@ TEST(CloudDensity, IsSolidBelowAndClearAbove) {
 double transmittance(const CloudDensity& cloud, double sigma) {
   constexpr int kSteps = 20000;
   double depth = 0;
-  for (int i = 0; i < kSteps; ++i) depth += cloud.at({0.5, 0.55, (i + 0.5) / kSteps});
+  for (int i = 0; i < kSteps; ++i) {
+    const double z = cloud.p0.z + (i + 0.5) / kSteps * (cloud.p1.z - cloud.p0.z);
+    depth += cloud.at({0.5, 0.55, z}) * (cloud.p1.z - cloud.p0.z);
+  }
   return std::exp(-sigma * 2 * depth / kSteps);
 }
 
-TEST(CloudDensity, ARayThroughTheCloudSeesItsTransmittance) {
+/// @param parameters of the medium that are those of the cloud
+void expect_transmittance(const CloudDensity& cloud, const std::string& parameters) {
   // A pixel so narrow that all rays are one, through a box that stands doubled in the world.
   const testing::Picture picture = testing::render_text(R"(
     Film "rgb" "integer xresolution" 1 "integer yresolution" 1
@@ -52,7 +57,8 @@ TEST(CloudDensity, ARayThroughTheCloudSeesItsTransmittance) {
     AttributeBegin
       Scale 2 2 2
       MakeNamedMedium "cloud" "string type" "cloud" "spectrum sigma_a" [ 300 0.7 900 0.7 ]
-        "spectrum sigma_s" [ 300 0 900 0 ]
+        "spectrum sigma_s" [ 300 0 900 0 ] )" + parameters +
+                                                            R"(
       MediumInterface "cloud" ""
       Material "interface"
       Translate 0.5 0.5 0.5
@@ -60,13 +66,27 @@ TEST(CloudDensity, ARayThroughTheCloudSeesItsTransmittance) {
     AttributeEnd)",
                                                         {.samples = 40'000});
   testing::expect_sound(picture);
-  const double expected = transmittance(CloudDensity(), 0.7);
+  const double expected = transmittance(cloud, 0.7);
   ASSERT_GT(expected, 0.2);
   ASSERT_LT(expected, 0.8);
   for (int c = 0; c < 3; ++c) {
     EXPECT_LT(picture.error[c], 0.005 * expected);
     EXPECT_NEAR(picture.mean[c], expected, 4 * picture.error[c]);
   }
+}
+
+TEST(CloudDensity, ARayThroughTheCloudSeesItsTransmittance) {
+  expect_transmittance(CloudDensity(), "");
+}
+
+TEST(CloudDensity, ItsParametersAreThoseOfTheMedium) {
+  expect_transmittance({.density = 3,
+                        .wispiness = 0.6,
+                        .frequency = 4,
+                        .p0 = Vec3d(0, 0, 0.2),
+                        .p1 = Vec3d(1, 1, 1.1)},
+                       R"("float density" 3 "float wispiness" .6 "float frequency" 4 )"
+                       R"("point3 p0" [ 0 0 .2 ] "point3 p1" [ 1 1 1.1 ])");
 }
 
 }  // namespace

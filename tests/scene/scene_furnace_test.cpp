@@ -93,29 +93,78 @@ TEST(SceneFurnace, CameraInsideTheMedium) {
                256);
 }
 
-std::string everything() {
+/// Media that overlap and lie within each other, two of them grids.
+std::string white_media() {
+  std::string voxels;
+  for (int i = 0; i < 27; ++i) voxels += std::to_string(i * 7 % 5) + " ";
+  const std::string grid =
+      R"("integer nx" 3 "integer ny" 3 "integer nz" 3 "rgb sigma_a" [ 0 0 0 ] "float density" [ )" +
+      voxels + "]\n";
+  const std::string colours =
+      R"("integer nx" 2 "rgb sigma_a" [ 0 0 0  0 0 0 ] "rgb sigma_s" [ 1 2 3  3 1 .5 ])";
   return white_medium("fog", 1.5, 0.6) + white_medium("mist", 0.7, -0.2) +
-         white_medium("milk", 6, 0) + medium_box("fog", Vec3d(-1.2), Vec3d(0.9, 1, 0.7)) +
+         white_medium("milk", 6, 0) +
+         R"(MakeNamedMedium "cloud" "string type" "uniformgrid" "rgb sigma_s" [ 1 1 1 ] )"
+         R"("string phase" "0.6*droplets:diameter=10+0.4*rayleigh" )"
+         R"("point3 p0" [ -1.3 .5 -.3 ] "point3 p1" [ -.3 1.3 .9 ] )" +
+         grid +
+         R"(MakeNamedMedium "dye" "string type" "rgbgrid" "point3 p0" [ .2 -1.1 -.8 ] )"
+         R"("point3 p1" [ .8 -.4 .3 ] )" +
+         colours + medium_box("fog", Vec3d(-1.2), Vec3d(0.9, 1, 0.7)) +
          medium_box("mist", Vec3d(-0.3), Vec3d(1.4, 0.8, 1)) +                 // overlaps
          medium_box("milk", Vec3d(-1, -1, -1), Vec3d(-0.6, -0.4, 0), "fog") +  // nested
-         R"(
+         medium_box("cloud", Vec3d(-1.3, 0.5, -0.3), Vec3d(-0.3, 1.3, 0.9)) +
+         medium_box("dye", Vec3d(0.2, -1.1, -0.8), Vec3d(0.8, -0.4, 0.3), "fog");
+}
+
+/// Every shape and every material that can be white, some within the media.
+std::string white_things() {
+  return R"(
+      MakeNamedMaterial "mirror" "string type" "conductor" "spectrum eta" [ 300 0 900 0 ]
+        "spectrum k" [ 300 1.5 900 1.5 ]
+      MakeNamedMaterial "chalk" "string type" "diffuse" "rgb reflectance" [ 1 1 1 ]
       AttributeBegin
-        Translate -0.6 0.5 -0.2 Material "diffuse" "rgb reflectance" [ 1 1 1 ]
-        Shape "sphere" "float radius" 0.4
+        Translate -0.6 0.5 -0.2 NamedMaterial "chalk" Shape "sphere" "float radius" 0.4
       AttributeEnd
       AttributeBegin
         Translate 0.7 0.4 -1.4 Material "dielectric" "float eta" 1.33 MediumInterface "milk" ""
         Shape "sphere" "float radius" 0.45
       AttributeEnd
       AttributeBegin
-        Translate 0.5 -0.7 -1.3 Material "dielectric" "float eta" 1.5 "float roughness" 0.001
+        Translate 0.5 -0.7 -1.3 Material "dielectric" "float eta" 1.5 "float roughness" 1e-7
         Shape "sphere" "float radius" 0.4
       AttributeEnd
       AttributeBegin
         Translate -0.4 -0.2 -2 Rotate 30 0 1 0 Material "thindielectric"
         Shape "disk" "float radius" 0.3
-      AttributeEnd)";
+      AttributeEnd
+      AttributeBegin
+        Translate -0.9 -0.5 -1.6 Rotate 70 1 0.3 0 NamedMaterial "chalk"
+        Shape "cylinder" "float radius" 0.2 "float zmin" -0.3 "float zmax" 0.3
+      AttributeEnd
+      AttributeBegin
+        Translate -0.8 0.9 -1.2
+        Material "mix" "string materials" [ "mirror" "chalk" ] "float amount" 0.4
+        Shape "bilinearmesh" "point3 P" [ -.3 -.3 0  .3 -.3 .2  -.3 .3 -.1  .3 .3 .1 ]
+      AttributeEnd
+      AttributeBegin
+        Translate 0.1 1 -1 Scale 0.35 0.35 0.35
+        Material "coateddiffuse" "rgb reflectance" [ 1 1 1 ] "float thickness" 0
+          "integer maxdepth" 10000
+        Shape "loopsubdiv" "integer levels" 2
+          "point3 P" [ 1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1 ]
+          "integer indices" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5 ]
+      AttributeEnd
+      ObjectBegin "stone"
+        NamedMaterial "chalk"
+        Shape "trianglemesh" "point3 P" [ 0 0 0  .5 0 0  0 .5 0  0 0 .5 ]
+          "integer indices" [ 0 2 1  0 1 3  0 3 2  1 2 3 ]
+      ObjectEnd
+      AttributeBegin Translate 0.9 -0.2 -0.2 ObjectInstance "stone" AttributeEnd
+      AttributeBegin Translate -0.2 -1 -1.2 Scale -.8 .8 .8 ObjectInstance "stone" AttributeEnd)";
 }
+
+std::string everything() { return white_media() + white_things(); }
 
 // Nearly: what a rough surface scatters twice within itself it loses, and so it must be smooth.
 TEST(SceneFurnace, EverythingAtOnce) { expect_white(furnace(everything()), 512); }
