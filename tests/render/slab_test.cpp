@@ -218,9 +218,9 @@ TEST(Slab, ErrorsNameParameterAndValue) {
   expect_error({{1, 1, -1.5}}, settings, "g of layer 1 is -1.5");
   expect_error({{kInfinity, 1, 0}}, settings, "albedo of the half-space (tau inf) is 1");
   std::vector<SlabLayer> many;
-  many.reserve(9);
-  for (int i = 0; i < 9; ++i) many.push_back({1, 0.1 * i, 0});
-  expect_error(many, settings, "9 different pairs of albedo and g");
+  many.reserve(17);
+  for (int i = 0; i < 17; ++i) many.push_back({1, 0.05 * i, 0});
+  expect_error(many, settings, "17 different pairs of albedo and g");
 
   const auto with = [](auto member, auto value) {
     SlabSettings changed;
