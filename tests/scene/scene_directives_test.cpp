@@ -93,7 +93,7 @@ TEST(SceneDirectives, Transforms) {
       {"ConcatTransform", place + " ConcatTransform [ " + turn + " ]" + kThing,
        place + " Rotate 90 0 0 1" + kThing},
       {"CoordSysTransform",
-       place + " CoordinateSystem \"here\" Rotate 50 1 1 0 CoordSysTransform \"here\"" + kThing,
+       place + R"( CoordinateSystem "here" Rotate 50 1 1 0 CoordSysTransform "here")" + kThing,
        placed + kThing},
       {"camera", "CoordSysTransform \"camera\" Translate .3 -.2 4.4" + kThing, placed + kThing},
       {"world", "Translate 9 9 9 CoordSysTransform \"world\"" + kThing, kThing},
@@ -138,12 +138,12 @@ TEST(SceneDirectives, AttributesStandForParameters) {
       "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\"\n";
   const std::string textured = R"( Material "diffuse" "texture reflectance" "t")" + kThing;
   expect_same_worlds({
-      {"shape", "Attribute \"shape\" \"float radius\" .6 Shape \"sphere\"",
-       "Shape \"sphere\" \"float radius\" .6"},
+      {"shape", R"(Attribute "shape" "float radius" .6 Shape "sphere")",
+       R"(Shape "sphere" "float radius" .6)"},
       {"material", "Attribute \"material\" " + red + " Material \"diffuse\"" + kThing,
        "Material \"diffuse\" " + red + kThing},
-      {"light", "Attribute \"light\" \"rgb I\" [ 3 5 2 ] LightSource \"point\"" + kThing,
-       "LightSource \"point\" \"rgb I\" [ 3 5 2 ]" + kThing},
+      {"light", R"(Attribute "light" "rgb I" [ 3 5 2 ] LightSource "point")" + kThing,
+       R"(LightSource "point" "rgb I" [ 3 5 2 ])" + kThing},
       {"medium",
        "Attribute \"medium\" " + fog + R"( MakeNamedMedium "m" "string type" "homogeneous" )" +
            boundary,
@@ -159,8 +159,7 @@ TEST(SceneDirectives, NamesStandForWhatTheyName) {
   const std::string red = R"("rgb reflectance" [ .9 .2 .1 ])";
   expect_same_worlds({
       {"NamedMaterial",
-       "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" " + red + " NamedMaterial \"a\"" +
-           kThing,
+       R"(MakeNamedMaterial "a" "string type" "diffuse" )" + red + " NamedMaterial \"a\"" + kThing,
        "Material \"diffuse\" " + red + kThing},
       {"Texture",
        R"(Texture "t" "spectrum" "constant" "rgb value" [ .9 .2 .1 ] )"
@@ -179,11 +178,11 @@ TEST(SceneDirectives, BeforeTheWorld) {
       R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb Le" [ 1 2 3 ] MediumInterface )";
   expect("Accelerator", "Accelerator \"kdtree\"", "");
   expect("TransformTimes", "TransformTimes .2 .7", "");
-  expect("Integrator", "Integrator \"path\" \"integer maxdepth\" 3",
-         "Integrator \"volpath\" \"integer maxdepth\" 3");
-  expect("Sampler", "Sampler \"sobol\" \"integer pixelsamples\" 4 \"integer seed\" 9",
+  expect("Integrator", R"(Integrator "path" "integer maxdepth" 3)",
+         R"(Integrator "volpath" "integer maxdepth" 3)");
+  expect("Sampler", R"(Sampler "sobol" "integer pixelsamples" 4 "integer seed" 9)",
          "Option \"integer seed\" 9", 1);
-  expect("MediumInterface", glow + "\"m\"", glow + "\"\" \"m\"");
+  expect("MediumInterface", glow + "\"m\"", glow + R"("" "m")");
 }
 
 // From inside of a sphere that shines and reflects half of what it receives, however often.
@@ -218,12 +217,13 @@ TEST(SceneDirectives, ColorSpacesAreThoseWhereColoursStand) {
     for (const ColorMode mode : kColorModes) {
       const PictureOptions options{.mode = mode, .samples = 4096};
       const MeanTolerance tolerance{.absolute = 3e-4, .largest_relative_error = 0.002};
-      expect_mean(
-          fmt::format("{} of a light {}", name, name_of(mode)),
-          render_text(film(2) + camera + "AttributeBegin " + set + light + "AttributeEnd", options),
-          {in_srgb.x, in_srgb.y, in_srgb.z}, tolerance);
+      expect_mean(fmt::format("{} of a light {}", name, name_of(mode)),
+                  render_text(fmt::format("{}{}AttributeBegin {}{}AttributeEnd", film(2), camera,
+                                          set, light),
+                              options),
+                  {in_srgb.x, in_srgb.y, in_srgb.z}, tolerance);
       expect_mean(fmt::format("{} of all {}", name, name_of(mode)),
-                  render_text(film(2) + set + camera + light, options),
+                  render_text(fmt::format("{}{}{}{}", film(2), set, camera, light), options),
                   {colour.x, colour.y, colour.z}, tolerance);
     }
   }

@@ -127,7 +127,7 @@ TEST(SceneSampler, EverySamplerFindsTheSameMean) {
 
 TEST(SceneSampler, SeedsOfOptionAndSamplerAreOne) {
   const std::string film_text = fmt::format(fmt::runtime(kSmallFilm), "rgb", "");
-  const std::string sampler = "Sampler \"independent\" \"integer pixelsamples\" 4 ";
+  const std::string sampler = R"(Sampler "independent" "integer pixelsamples" 4 )";
   const auto pixels = [&](const std::string& before) {
     return render_as_told(lit_plane(film_text + before), ColorMode::kRgb).image.values;
   };
@@ -138,7 +138,7 @@ TEST(SceneSampler, SeedsOfOptionAndSamplerAreOne) {
 
 // The films differ in what they store, not in what they measure.
 TEST(SceneFilm, AllFilmsHaveTheSameColours) {
-  const std::string sampler = "Sampler \"sobol\" \"integer pixelsamples\" 1024 ";
+  const std::string sampler = R"(Sampler "sobol" "integer pixelsamples" 1024 )";
   for (const ColorMode mode : kColorModes) {
     const auto picture = [&](const std::string& type) {
       return render_as_told(lit_plane(fmt::format(fmt::runtime(kSmallFilm), type, "") + sampler),
