@@ -77,16 +77,17 @@ FilmPlan read_film_options(const FilmOptions& options) {
   return plan;
 }
 
-void check_memory(const PixelWindow& window, const FilmPlan& plan) {
+void check_memory(const PixelWindow& window, const FilmPlan& plan,
+                  const WavelengthBuckets& buckets) {
   constexpr double kGigabyte = 1e9;
   // The sums of samples, and the picture made of them, which is written from a copy.
-  std::size_t channels = 4;
+  std::size_t channels = 4 + buckets.count;
   for (const LayerInfo& info : layer_infos()) {
     if (plan.written().has(info.layer)) channels += info.channels.size();
   }
   if (plan.denoiser) channels += 20;  // its inputs and output, and the noisy picture
-  const auto bytes =
-      static_cast<double>(Film::bytes_per_pixel(plan.recorded()) + channels * sizeof(float));
+  const auto bytes = static_cast<double>(Film::bytes_per_pixel(plan.recorded(), buckets) +
+                                         channels * sizeof(float));
   const double needed = bytes * window.width * window.height;
   const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
   if (needed > 0.8 * present) {

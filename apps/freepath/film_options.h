@@ -44,7 +44,8 @@ void add_film_options(CLI::App& command, FilmOptions& options);
 FilmPlan read_film_options(const FilmOptions& options);
 
 /// Refuses a picture that this machine's memory can't hold: it would end the program, or others.
-void check_memory(const PixelWindow& window, const FilmPlan& plan);
+void check_memory(const PixelWindow& window, const FilmPlan& plan,
+                  const WavelengthBuckets& buckets = {});
 
 /// Shows the picture while these settings are rendered with, on the display that a plan names.
 /// A display that can't be reached, or is lost, is warned of.

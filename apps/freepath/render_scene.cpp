@@ -50,6 +50,7 @@ RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
       plan.transmittance.value_or(picture.transmittance.empty() ? "ratio" : picture.transmittance);
   walk.transmittance =
       to_string(parse_method(walk.transmittance, transmittance_infos()), transmittance_infos());
+  settings.buckets = picture.buckets;
   settings.crop = plan.film.crop ? plan.film.crop : picture.crop;
   walk.interpolation =
       plan.interpolation.value_or(picture.interpolation.value_or(walk.interpolation));
@@ -76,6 +77,12 @@ void render_scene_file(const ScenePlan& plan) {
   report.threads = plan.settings.threads;
   report.volumes.push_back({plan.file, {}});
   report.seconds_load = watch.lap();
+  if (report.settings.buckets.count > 0 && plan.color == ColorMode::kRgb) {
+    fmt::print(stderr,
+               "warning: the film is of type 'spectral', but with --color rgb there are no "
+               "wavelengths: R, G and B alone are written\n");
+    report.settings.buckets = {};
+  }
   warn_if_biased(report.settings.walk.tracker);
 
   FilmPlan film = plan.film;
@@ -83,7 +90,7 @@ void render_scene_file(const ScenePlan& plan) {
   report.settings.layers = film.recorded();
   const SceneCamera& camera = *built.scene.camera;
   const PixelWindow window = pixel_window(report.settings.crop, camera.width(), camera.height());
-  check_memory(window, film);
+  check_memory(window, film, report.settings.buckets);
   const auto display = show_passes(film, outputs.front(), report.settings);
 
   const StopOnInterrupt stop;

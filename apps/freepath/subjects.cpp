@@ -93,6 +93,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   }
   LoadedSubject loaded;
   loaded.settings = settle(plan, *built);
+  loaded.settings.buckets = {};  // colours are compared
   const SceneCamera& camera = *built->scene.camera;
   const PixelWindow window = pixel_window(loaded.settings.crop, camera.width(), camera.height());
   check_memory(window, FilmPlan());

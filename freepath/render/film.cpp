@@ -56,19 +56,21 @@ Film::SumPlaces Film::places_of(LayerSet layers, int& count) {
   return places;
 }
 
-std::size_t Film::bytes_per_pixel(LayerSet layers) {
+std::size_t Film::bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets) {
   int sums = 0;
   places_of(layers, sums);
-  return sizeof(Pixel) + sums * sizeof(double);
+  return sizeof(Pixel) + sums * sizeof(double) + buckets.count * sizeof(BucketSum);
 }
 
-Film::Film(const PixelWindow& window, LayerSet layers) : window_(window), layers_(layers) {
+Film::Film(const PixelWindow& window, LayerSet layers, const WavelengthBuckets& buckets)
+    : window_(window), layers_(layers), buckets_(buckets) {
   if (window.width < 1 || window.height < 1) {
     fail("the film has {}x{} pixels; it needs at least 1x1", window.width, window.height);
   }
   pixels_.resize(static_cast<std::size_t>(window.width) * window.height);
   places_ = places_of(layers, sums_per_pixel_);
   sums_.resize(pixels_.size() * sums_per_pixel_);
+  bucket_sums_.resize(pixels_.size() * buckets.count);
 }
 
 void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample) {
@@ -102,6 +104,17 @@ void Film::add_layers(std::size_t pixel, const LayerSample& sample) {
   add(kBackground, sample.background);
   add(kUnscattered, sample.unscattered);
   add(kAtMostOnce, sample.at_most_once);
+}
+
+void Film::add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
+                        const Channels& radiance) {
+  for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+    const int bucket = buckets_.bucket_of(wavelengths[i]);
+    if (bucket < 0) continue;
+    BucketSum& sum = bucket_sums_[pixel * buckets_.count + bucket];
+    sum.radiance += radiance[static_cast<int>(i)];
+    sum.samples += 1;
+  }
 }
 
 Film::SampleCounts Film::sample_counts() const {
@@ -189,6 +202,7 @@ Image Film::to_image(LayerSet layers) const {
     chosen.push_back(info.layer);
     image.channels.insert(image.channels.end(), info.channels.begin(), info.channels.end());
   }
+  for (int i = 0; i < buckets_.count; ++i) image.channels.push_back(buckets_.channel(i));
   image.values.reserve(pixels_.size() * image.channels.size());
   for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
     const Pixel& sums = pixels_[pixel];
@@ -196,6 +210,10 @@ Image Film::to_image(LayerSet layers) const {
     for (const double radiance : sums.radiance) image.values.push_back(to_float(radiance / n));
     image.values.push_back(to_float(sums.alpha / n));
     for (const Layer layer : chosen) put_layer(layer, pixel, image.values);
+    for (int i = 0; i < buckets_.count; ++i) {
+      const BucketSum& sum = bucket_sums_[pixel * buckets_.count + i];
+      image.values.push_back(sum.samples > 0 ? to_float(sum.radiance / sum.samples) : 0.0F);
+    }
   }
   return image;
 }

@@ -4,12 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "freepath/base/channels.h"
 #include "freepath/base/spectrum.h"
 #include "freepath/io/image.h"
 #include "freepath/render/layers.h"
 #include "freepath/render/pixel_window.h"
+#include "freepath/render/wavelength_buckets.h"
 
 namespace freepath {
 
@@ -53,7 +56,8 @@ struct LayerSample {
 class Film {
  public:
   /// @throws Error for an empty film
-  explicit Film(const PixelWindow& window, LayerSet layers = LayerSet::standard());
+  explicit Film(const PixelWindow& window, LayerSet layers = LayerSet::standard(),
+                const WavelengthBuckets& buckets = {});
   Film(int width, int height) : Film(PixelWindow::whole(width, height)) {}
 
   int width() const { return window_.width; }
@@ -61,7 +65,8 @@ class Film {
   const PixelWindow& window() const { return window_; }
   /// What it records, which takes memory.
   LayerSet layers() const { return layers_; }
-  static std::size_t bytes_per_pixel(LayerSet layers);
+  const WavelengthBuckets& buckets() const { return buckets_; }
+  static std::size_t bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets = {});
 
   /// Adds the next sample of a pixel.
   ///
@@ -70,6 +75,12 @@ class Film {
   /// @param pixel row · width + column
   /// @param layer_sample looked at only where one of kPathLayers is recorded; has to be finite
   void add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample = {});
+
+  /// Adds a sample's spectral radiance to the buckets of its wavelengths.
+  /// @param wavelengths [nm], those of the first channels of the radiance
+  /// @param radiance finite
+  void add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
+                    const Channels& radiance);
 
   /// Samples of a pixel that were added.
   uint32_t samples(std::size_t pixel) const { return pixels_[pixel].samples; }
@@ -95,6 +106,9 @@ class Film {
   /// average. normal is the mean over all paths, 0 for those without a first event; position is one
   /// over first events. emission + background + direct + indirect is R, G, B, up to rounding. A and
   /// B are means over the samples of even and odd number. A pixel without samples is 0.
+  ///
+  /// After them come the buckets of wavelengths, if there are any: the mean over what came into
+  /// each, 0 where nothing did.
   Image to_image() const { return to_image(layers_); }
   /// With these layers alone, of those that it has.
   Image to_image(LayerSet layers) const;
@@ -135,6 +149,13 @@ class Film {
   int sums_per_pixel_ = 0;  // in doubles
   SumPlaces places_{};
   std::vector<double> sums_;
+  WavelengthBuckets buckets_;
+  /// Of a bucket of a pixel.
+  struct BucketSum {
+    double radiance = 0;
+    double samples = 0;
+  };
+  std::vector<BucketSum> bucket_sums_;
 };
 
 }  // namespace freepath

@@ -24,6 +24,9 @@ struct RenderSettings {
   uint32_t max_scatterings = UINT32_MAX;
   /// What the film records; path layers cost time, and all cost memory.
   LayerSet layers = LayerSet::standard();
+  /// Channels of spectral radiance, in the light's own units (docs/scenes.md); recorded only where
+  /// wavelengths are rendered.
+  WavelengthBuckets buckets = {};
   /// Renders a part alone, whose pixels are those of the whole picture.
   std::optional<Crop> crop = {};
   /// Called between passes, by the thread that renders, with what there is.

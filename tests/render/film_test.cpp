@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
@@ -114,6 +116,31 @@ TEST(Film, TakesMemoryForItsLayersAlone) {
 TEST(Film, RefusesToBeEmpty) {
   EXPECT_THROW(Film(0, 10), Error);
   EXPECT_THROW(Film(10, -1), Error);
+}
+
+// A bucket holds the mean of what came into it, whatever came into others.
+TEST(Film, GathersSpectralRadianceInBuckets) {
+  const WavelengthBuckets buckets{4, 400, 800};
+  Film film(PixelWindow::whole(2, 1), {}, buckets);
+  EXPECT_EQ(Film::bytes_per_pixel({}, buckets), Film::bytes_per_pixel({}) + 64);
+  const std::array<double, 4> wavelengths = {420, 499.9, 800, 399.9};
+  film.add_spectrum(1, wavelengths, Channels(1, 4, 7, 100));
+  film.add_spectrum(1, std::span(wavelengths).first(1), Channels(4, 9, 9, 9));
+  const Image image = film.to_image();
+  const std::vector<std::string> expected = {"R",
+                                             "G",
+                                             "B",
+                                             "A",
+                                             "S0.450,000000nm",
+                                             "S0.550,000000nm",
+                                             "S0.650,000000nm",
+                                             "S0.750,000000nm"};
+  EXPECT_EQ(image.channels, expected);
+  EXPECT_EQ(image.values[8 + 4], 3);  // of 1, 4 and 4
+  EXPECT_EQ(image.values[8 + 5], 0);
+  EXPECT_EQ(image.values[8 + 6], 0);
+  EXPECT_EQ(image.values[8 + 7], 7);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(image.values[i], 0);
 }
 
 }  // namespace

@@ -51,6 +51,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.samples = options.samples;
   settings.wavelengths = options.wavelengths;
   settings.threads = options.threads;
+  settings.buckets = built.picture.buckets;
   settings.batch = options.batch;
   settings.max_scatterings = built.picture.max_scatterings;
   settings.walk.seed = options.seed;

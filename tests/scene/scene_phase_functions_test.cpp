@@ -93,7 +93,7 @@ TEST(ScenePhaseFunction, Isotropic) {
 
 TEST(ScenePhaseFunction, HenyeyGreenstein) {
   expect_phase("\"float g\" 0.7", [](double c) { return henyey_greenstein(0.7, c); });
-  expect_phase("\"string phase\" \"henyey-greenstein:g=-0.4\"",
+  expect_phase(R"("string phase" "henyey-greenstein:g=-0.4")",
                [](double c) { return henyey_greenstein(-0.4, c); });
 }
 

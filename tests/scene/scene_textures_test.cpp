@@ -132,6 +132,7 @@ TEST(SceneTexture, ImageIsBilinearAndRepeats) {
   // Moved by a pixel to the right and inverted.
   const std::vector<double> moved = {.8, .3, .1, .5, .9, .6, .4, .7, .2};
   std::vector<double> inverted;
+  inverted.reserve(moved.size());
   for (const double value : moved) inverted.push_back(1 - value);
   expect_pixels(
       "moved",

@@ -32,7 +32,11 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   }
   const PixelWindow window =
       pixel_window(settings.crop, scene.camera->width(), scene.camera->height());
-  RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
+  const bool spectral = mode == ColorMode::kSpectral;
+  RenderResult result{
+      .film = Film(window, settings.layers, spectral ? settings.buckets : WavelengthBuckets{}),
+      .free_paths = {},
+      .shadow_rays = {}};
   const ColorFactory factory(scene, mode, settings.wavelengths, settings.walk);
   SceneSetup setup;
   setup.scene = &scene;

@@ -11,7 +11,8 @@ constexpr float kShadowLength = 1 - 1e-4F;
 }  // namespace
 
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
-  if (!setup_.factory->sees_rgb() || path.is_coloured) return false;
+  const bool needs_spectrum = !spectra_.empty();
+  if (!setup_.factory->sees_rgb() || path.is_coloured || needs_spectrum) return false;
   const Channels& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
     if (c[i] != c[0]) return false;

@@ -38,6 +38,7 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples * setup_.factory->paths_per_sample(), PathSample{});
   layers_.begin(film, results_.size());
+  spectra_.assign(film.buckets().count > 0 ? results_.size() : 0, Channels());
   window_ = film.window();
   job_counts_ = {};
   const std::size_t total = job.pixels * job.samples * setup_.factory->paths_per_sample();
@@ -259,11 +260,25 @@ void SceneWavefront::finish(ScenePath& path) {
     return;
   }
   sample.radiance = rgb_of(path, path.radiance, path.rgb);
+  if (!spectra_.empty()) spectra_[path.result] = path.radiance;
   if (layers_.on()) layers_.end(path.result, path.scatterings, sample.radiance);
   sample.alpha = path.sample.alpha;
   sample.albedo = path.sample.albedo;
   sample.depth = path.sample.depth;
   sample.depth_weight = path.sample.depth_weight;
+}
+
+void SceneWavefront::add_spectrum(const PathJob& job, std::size_t sample, Film& film) const {
+  const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
+  Channels radiance;
+  for (std::size_t c = 0; c < per_sample; ++c) radiance += spectra_[sample * per_sample + c];
+  const uint32_t number = job.first_sample + static_cast<uint32_t>(sample % job.samples);
+  const SpectrumValues& values = setup_.colors[number - setup_.first_sample]->spectra;
+  // In the light's units, which the colour matching of our observer takes out.
+  constexpr auto kLightUnit = static_cast<float>(1 / kLuminousIntegral);
+  film.add_spectrum(job.first_pixel + sample / job.samples,
+                    std::span(values.wavelengths()).first(values.channels()),
+                    radiance * (scene_.exposure_scale * kLightUnit));
 }
 
 void SceneWavefront::add_to_film(const PathJob& job, Film& film) const {
@@ -292,6 +307,7 @@ void SceneWavefront::add_to_film(const PathJob& job, Film& film) const {
       }
     }
     film.add(job.first_pixel + i / job.samples, sum, layers);
+    if (!spectra_.empty()) add_spectrum(job, i, film);
   }
 }
 

@@ -85,6 +85,8 @@ class SceneWavefront {
   Spectrum transmittance_of(const ScenePath& path) const;
   void finish(ScenePath& path);
   void add_to_film(const PathJob& job, Film& film) const;
+  /// @param sample of the job
+  void add_spectrum(const PathJob& job, std::size_t sample, Film& film) const;
 
   const SceneSetup& setup_;
   const PathScene& scene_;
@@ -95,8 +97,9 @@ class SceneWavefront {
   ShadowTracer shadows_;
   EmissionTracer emissions_;
   std::vector<PathSample> results_;
-  LayerRecorder layers_;  // of the results
-  PixelWindow window_;    // of the film at work
+  std::vector<Channels> spectra_;  // of the same paths, if the film records them
+  LayerRecorder layers_;           // of the results
+  PixelWindow window_;             // of the film at work
   PathWavefront::Counts job_counts_;
   PathWavefront::Counts counts_;
 };

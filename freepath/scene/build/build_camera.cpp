@@ -102,6 +102,23 @@ float exposure_time(const BuildContext& context) {
   return static_cast<float>(close - open);
 }
 
+WavelengthBuckets read_buckets(const ParameterList& list) {
+  constexpr int kMost = 1000;
+  WavelengthBuckets buckets;
+  buckets.count = list.get_integer("nbuckets", 16);
+  if (buckets.count < 1 || buckets.count > kMost) {
+    fail_at(list.location_of("nbuckets"), "'nbuckets' is {}: it must be 1 to {}", buckets.count,
+            kMost);
+  }
+  buckets.first = list.get_float("lambdamin", kShortestWavelength);
+  buckets.last = list.get_float("lambdamax", kLongestWavelength);
+  if (!(buckets.first < buckets.last)) {
+    fail_at(list.location_of("lambdamax"), "wavelengths from {} to {} nm are no interval",
+            buckets.first, buckets.last);
+  }
+  return buckets;
+}
+
 void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) {
   if (!context.pbrt.film) return;
   const PbrtEntity& film = *context.pbrt.film;
@@ -110,12 +127,7 @@ void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) 
   if (std::find(std::begin(kKnown), std::end(kKnown), film.type) == std::end(kKnown)) {
     fail_unknown(film, "film", kKnown);
   }
-  if (film.type == "spectral") {
-    context.diagnostics.warn(film.location,
-                             "a film of type 'spectral' is written as R, G, B: there are no layers "
-                             "of wavelengths yet");
-    pass_over(list, {"nbuckets", "lambdamin", "lambdamax"});
-  }
+  if (film.type == "spectral") picture.buckets = read_buckets(list);
   size.width = list.get_integer("xresolution", size.width);
   size.height = list.get_integer("yresolution", size.height);
   if (size.width < 1 || size.height < 1 || double(size.width) * size.height > 1e9) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "freepath/render/pixel_window.h"
+#include "freepath/render/wavelength_buckets.h"
 #include "freepath/scene/build/build_context.h"
 
 namespace freepath {
@@ -19,8 +20,9 @@ struct PictureSettings {
   std::string file_name;     ///< Of the film; may be empty.
   float exposure_scale = 1;  ///< What the film's sensor multiplies radiance by.
   std::string color_space = "srgb";
-  bool all_layers = false;   ///< A film of type 'gbuffer'.
-  std::optional<Crop> crop;  ///< In fractions, which any size of the film has.
+  bool all_layers = false;    ///< A film of type 'gbuffer'.
+  WavelengthBuckets buckets;  ///< Of a film of type 'spectral'.
+  std::optional<Crop> crop;   ///< In fractions, which any size of the film has.
   // Of our own parameters of the integrator; empty where they are not given.
   std::string tracker, transmittance;
   std::optional<Interpolation> interpolation;
