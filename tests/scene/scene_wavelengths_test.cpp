@@ -15,6 +15,15 @@ namespace {
 /// Constant between 400 and 700 nm and 0 beyond, as the scene language has it.
 double band(double wavelength) { return wavelength >= 400 && wavelength <= 700 ? 0.5 : 0; }
 
+/// A small film in front of the unit cube, up to the world's beginning.
+std::string in_front(const char* tracker) {
+  return testing::film(4) + R"(
+    LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
+    Camera "perspective" "float fov" 24
+    Integrator "volpath" "integer maxdepth" 100 "string tracker" ")" +
+         tracker + "\"\n    WorldBegin\n";
+}
+
 TEST(SceneWavelengths, AReflectanceIsNotGreyForBeingEqualAtFour) {
   const std::string text = testing::film(4) + R"(
     LookAt 0 0 5  0 0 0  0 1 0
@@ -54,11 +63,7 @@ TEST(SceneWavelengths, AMediumIsNotGreyForBeingEqualAtFour) {
 }
 
 TEST(SceneWavelengths, PathsOfChannelsAddUpInOneOrder) {
-  const std::string text = testing::film(4) + R"(
-    LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
-    Camera "perspective" "float fov" 20
-    Integrator "volpath" "integer maxdepth" 100 "string tracker" "delta"
-    WorldBegin
+  const std::string text = in_front("delta") + R"(
     LightSource "infinite" "rgb L" [ 1 1 1 ]
     MakeNamedMedium "red" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.4 0.9 ]
       "rgb sigma_s" [ 4 2 1 ]
@@ -79,12 +84,7 @@ TEST(SceneWavelengths, PathsOfChannelsAddUpInOneOrder) {
 // path has fewer channels than a picture.
 TEST(SceneWavelengths, AnyNumberOfThemGivesTheSamePicture) {
   const auto text = [](const char* tracker) {
-    return testing::film(4) + R"(
-    LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
-    Camera "perspective" "float fov" 24
-    Integrator "volpath" "integer maxdepth" 100 "string tracker" ")" +
-           tracker + R"("
-    WorldBegin
+    return in_front(tracker) + R"(
     LightSource "infinite" "rgb L" [ 0.4 0.7 1 ]
     LightSource "distant" "point3 from" [ 1 2 1 ] "rgb L" [ 2 1.5 1 ]
     MakeNamedMedium "grey" "string type" "homogeneous" "spectrum sigma_a" [ 300 0.1 900 0.1 ]
@@ -116,11 +116,7 @@ TEST(SceneWavelengths, AnyNumberOfThemGivesTheSamePicture) {
 }
 
 TEST(SceneWavelengths, EightOfThemFitIntoAGridOfSpectra) {
-  const std::string text = testing::film(4) + R"(
-    LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
-    Camera "perspective" "float fov" 24
-    Integrator "volpath" "integer maxdepth" 100 "string tracker" "delta"
-    WorldBegin
+  const std::string text = in_front("delta") + R"(
     LightSource "infinite" "rgb L" [ 0.4 0.7 1 ]
     MakeNamedMedium "grid" "string type" "rgbgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1
       "rgb sigma_a" [ 0.1 0.4 0.9  0.9 0.4 0.1 ] "rgb sigma_s" [ 3 2 1  1 2 3 ]
