@@ -61,7 +61,7 @@ std::optional<Crop> read_crop(BuildContext& context, const ParameterList& list,
   const std::span<const double> window = list.get_floats("cropwindow");
   if (bounds.empty() && window.empty()) return {};
   const std::string_view name = bounds.empty() ? "cropwindow" : "pixelbounds";
-  const SourceLocation where = list.location_of(name);
+  const SourceLocation& where = list.location_of(name);
   if (!bounds.empty() && !window.empty()) {
     context.diagnostics.warn(where, "'cropwindow' is left out, since there is 'pixelbounds'");
   }
