@@ -21,6 +21,7 @@ foreach(room base media tracking transport io)
           PATTERN "transmittance" EXCLUDE)
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/generated/freepath/base/version.h
+              ${PROJECT_BINARY_DIR}/generated/freepath/base/build_options.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/freepath/base)
 
 set(freepath_package ${CMAKE_INSTALL_LIBDIR}/cmake/freepath)

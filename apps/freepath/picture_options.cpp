@@ -53,7 +53,8 @@ void add_camera_options(CLI::App& command, PictureOptions& o) {
       ->group("Picture");
   command
       .add_option("--wavelengths", o.wavelengths,
-                  "That a path carries together with --color spectral, 1 to 8")
+                  fmt::format("That a path carries together with --color spectral, 1 to {}",
+                              kMaxChannels))
       ->capture_default_str()
       ->check(CLI::Range(1, kMaxChannels))
       ->group("Picture");

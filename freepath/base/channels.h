@@ -5,13 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "freepath/base/build_options.h"
+
 namespace freepath {
 
-/// The most channels that a path carries; those that it does not use are 0.
-inline constexpr int kMaxChannels = 8;
-
 /// Values of the channels of a path: R, G, B, or radiances at its wavelengths. What the channels
-/// stand for, the path's SpectrumValues say.
+/// stand for, the path's SpectrumValues say. Those that it does not use are 0.
 class alignas(16) Channels {
  public:
   constexpr Channels() = default;

@@ -64,6 +64,13 @@ HWY_INLINE void prefetch_lanes(const T* base, const int32_t (&places)[kLanes]) {
   for (size_t lane = 0; lane < kLanes; ++lane) hwy::Prefetch(base + places[lane]);
 }
 
+/// Asks for `count` values of an array, a cache line after the other.
+template <class T>
+HWY_INLINE void prefetch_row(const T* values, size_t count) {
+  constexpr size_t kLine = 64 / sizeof(T);
+  for (size_t i = 0; i < count; i += kLine) hwy::Prefetch(values + i);
+}
+
 /// Deals the elements of arrays out to chosen lanes: the n-th of those lanes gets the n-th element.
 class Dealer {
  public:

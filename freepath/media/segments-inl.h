@@ -23,6 +23,7 @@ struct SegmentCursor {
   VecF end;           ///< Where the ray leaves the medium or ends [world].
   VecF cell[3];       ///< Super-voxel that holds the point at t; whole numbers.
   VecI record;        ///< Place of its record in Medium::walk_cells().
+  VecF head;          ///< First number of that record.
 };
 
 /// The same in memory, one row a lane.
@@ -34,6 +35,7 @@ struct SegmentState {
   HWY_ALIGN_MAX float end[kLanes];
   HWY_ALIGN_MAX float cell[3][kLanes];
   HWY_ALIGN_MAX int32_t record[kLanes];
+  HWY_ALIGN_MAX float head[kLanes];
 };
 
 /// A segment: the part of a ray in one super-voxel, or in one empty cube of them.
@@ -64,6 +66,7 @@ class SuperVoxelSegments {
     cursor.t = hn::Load(kFloat, state.t);
     cursor.end = hn::Load(kFloat, state.end);
     cursor.record = hn::Load(kInt, state.record);
+    cursor.head = hn::Load(kFloat, state.head);
     return cursor;
   }
 
@@ -72,6 +75,7 @@ class SuperVoxelSegments {
     for (int axis = 0; axis < 3; ++axis) hn::Store(cursor.cell[axis], kFloat, state.cell[axis]);
     hn::Store(cursor.t, kFloat, state.t);
     hn::Store(cursor.record, kInt, state.record);
+    hn::Store(cursor.head, kFloat, state.head);
   }
 
   /// Puts rows of entered rays, from `first` on, into the dealer's lanes.
@@ -87,13 +91,14 @@ class SuperVoxelSegments {
     dealer.deal(rays.length + first, state.end);
     dealer.fill(0.0F, state.t);
     dealer.deal(rays.record + first, state.record);
+    dealer.deal(rays.head + first, state.head);
   }
 
   /// The segment at the cursor. Lanes outside the mask get entry 0 and no meaning.
   HWY_INLINE Segment segment(const Cursor& cursor, MaskF lanes) const {
     Segment s;
     s.record = hn::IfThenElseZero(int_mask(lanes), cursor.record);
-    s.head = hn::GatherIndex(kFloat, medium_.cells, s.record);
+    s.head = cursor.head;
     const VecF radius = hn::Max(hn::Neg(s.head), set(1.0F));
     const VecF radius_back = hn::Sub(set(1.0F), radius);
     VecF exits[3];
@@ -115,7 +120,7 @@ class SuperVoxelSegments {
   HWY_INLINE Segment record(const Cursor& cursor, MaskF lanes) const {
     Segment s;
     s.record = hn::IfThenElseZero(int_mask(lanes), cursor.record);
-    s.head = hn::GatherIndex(kFloat, medium_.cells, s.record);
+    s.head = cursor.head;
     return s;
   }
 
@@ -139,13 +144,11 @@ class SuperVoxelSegments {
       inside = hn::AndNot(hn::Lt(next, hn::Zero(kFloat)), inside);
       inside = hn::And(inside, hn::Lt(next, set(static_cast<float>(medium_.cell_counts[axis]))));
     }
-    assign(cursor.record, lanes, hn::IfThenElseZero(int_mask(inside), record_of(cursor)));
+    const VecI record = hn::IfThenElseZero(int_mask(inside), record_of(cursor));
+    assign(cursor.record, lanes, record);
+    // Read now and used in the next step, which other groups' steps come before: none waits for it.
+    assign(cursor.head, lanes, hn::GatherIndex(kFloat, medium_.cells, record));
     return inside;
-  }
-
-  /// Asks for the records of the cells that a group has come to.
-  HWY_INLINE void prefetch(const State& state) const {
-    prefetch_lanes(medium_.cells, state.record);
   }
 
   HWY_INLINE void position(const Cursor& cursor, VecF (&point)[3]) const {

@@ -41,28 +41,7 @@ class RayDealer {
     const uint32_t done = group.escaped | group.scattered | group.absorbed;
     if (done == 0) return;
     if constexpr (Group::kRows > 0) finish(group, done);
-    for (uint32_t rest = done; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      const uint32_t bit = 1U << lane;
-      const uint32_t ray = group.ray[lane];
-      flights_.t[ray] = group.segments.t[lane] + group.begin[lane];
-      flights_.event[ray] = (group.scattered & bit) != 0  ? Event::kScatter
-                            : (group.absorbed & bit) != 0 ? Event::kAbsorb
-                                                          : Event::kEscape;
-      flights_.component[ray] = static_cast<uint8_t>(group.component[lane]);
-      for (int channel = 0; channel < N; ++channel) {
-        flights_.weight[channel][ray] = group.weight[channel][lane];
-        flights_.emitted[channel][ray] = group.emitted[channel][lane];
-        if constexpr (Tracker::kDrawsHero) {
-          flights_.density[channel][ray] = group.rows[channel][lane];
-        }
-      }
-      // Every block but one that found no collision belongs to a tentative collision.
-      const uint32_t unspent = (group.escaped & bit) != 0 ? 1 : 0;
-      uint32_t looked_up = group.block[lane] - unspent;
-      if constexpr (Tracker::kControl) looked_up -= group.control_decided[lane];
-      flights_.lookups[ray] = looked_up * Group::lookups_per_collision(medium_);
-    }
+    write_out(group, done);
     group.escaped = group.scattered = group.absorbed = group.colliding = group.looking = 0;
     group.alive &= ~done;
     group.drawing &= ~done;
@@ -73,9 +52,7 @@ class RayDealer {
   HWY_INLINE void refill(Group& group) {
     if (next_ray_ == chunk_end_) {
       if (next_ray_ == rays_.size()) return;
-      chunk_begin_ = next_ray_;
-      chunk_ = &entry_.enter(next_ray_);
-      chunk_end_ = std::min(next_ray_ + Entry::kChunk, rays_.size());
+      begin_chunk();
     }
     uint32_t lanes = ~group.alive & ((1U << kLanes) - 1);
     const std::size_t left = chunk_end_ - next_ray_;
@@ -110,6 +87,83 @@ class RayDealer {
   }
 
  private:
+  /// Enters the next rays, and asks for what their lanes will read and write besides.
+  HWY_INLINE void begin_chunk() {
+    chunk_begin_ = next_ray_;
+    chunk_ = &entry_.enter(chunk_begin_);
+    const std::size_t count = std::min(Entry::kChunk, rays_.size() - chunk_begin_);
+    chunk_end_ = chunk_begin_ + count;
+    prefetch_row(rays_.pixel.data() + chunk_begin_, count);
+    prefetch_row(rays_.sample.data() + chunk_begin_, count);
+    prefetch_row(rays_.stream.data() + chunk_begin_, count);
+    prefetch_row(flights_.t.data() + chunk_begin_, count);
+    prefetch_row(flights_.event.data() + chunk_begin_, count);
+    prefetch_row(flights_.component.data() + chunk_begin_, count);
+    prefetch_row(flights_.lookups.data() + chunk_begin_, count);
+    for (int channel = 0; channel < N; ++channel) {
+      prefetch_row(flights_.weight[channel].data() + chunk_begin_, count);
+      prefetch_row(flights_.emitted[channel].data() + chunk_begin_, count);
+    }
+  }
+
+  /// What became of the rays in the lanes `done`, into their slots.
+  HWY_INLINE void write_out(const Group& group, uint32_t done) const {
+    HWY_ALIGN_MAX float t[kLanes];
+    HWY_ALIGN_MAX uint32_t event[kLanes];
+    HWY_ALIGN_MAX uint32_t lookups[kLanes];
+    hn::Store(hn::Add(hn::Load(kFloat, group.segments.t), hn::Load(kFloat, group.begin)), kFloat,
+              t);
+    hn::Store(events(group), kUint, event);
+    hn::Store(lookups_of(group), kUint, lookups);
+    // In locals, since a store of bytes could change what the vectors of `flights_` point at.
+    float* const out_t = flights_.t.data();
+    Event* const out_event = flights_.event.data();
+    uint8_t* const out_component = flights_.component.data();
+    uint32_t* const out_lookups = flights_.lookups.data();
+    float* out_weight[N];
+    float* out_emitted[N];
+    float* out_density[N];
+    for (int channel = 0; channel < N; ++channel) {
+      out_weight[channel] = flights_.weight[channel].data();
+      out_emitted[channel] = flights_.emitted[channel].data();
+      out_density[channel] = flights_.density[channel].data();
+    }
+    for (uint32_t rest = done; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      const uint32_t ray = group.ray[lane];
+      out_t[ray] = t[lane];
+      out_event[ray] = static_cast<Event>(event[lane]);
+      out_component[ray] = static_cast<uint8_t>(group.component[lane]);
+      out_lookups[ray] = lookups[lane];
+      for (int channel = 0; channel < N; ++channel) {
+        out_weight[channel][ray] = group.weight[channel][lane];
+        out_emitted[channel][ray] = group.emitted[channel][lane];
+        if constexpr (Tracker::kDrawsHero) {
+          out_density[channel][ray] = group.rows[channel][lane];
+        }
+      }
+    }
+  }
+
+  static HWY_INLINE VecU events(const Group& group) {
+    const auto code = [](Event event) { return hn::Set(kUint, static_cast<uint32_t>(event)); };
+    const VecU unscattered = hn::IfThenElse(uint_mask(mask_of(group.absorbed)),
+                                            code(Event::kAbsorb), code(Event::kEscape));
+    return hn::IfThenElse(uint_mask(mask_of(group.scattered)), code(Event::kScatter), unscattered);
+  }
+
+  /// Look-ups of flights that have ended.
+  HWY_INLINE VecU lookups_of(const Group& group) const {
+    // Every block but one that found no collision belongs to a tentative collision.
+    const MaskU escaped = uint_mask(mask_of(group.escaped));
+    VecU collisions = hn::Load(kUint, group.block);
+    collisions = hn::Sub(collisions, hn::IfThenElseZero(escaped, hn::Set(kUint, 1)));
+    if constexpr (Tracker::kControl) {
+      collisions = hn::Sub(collisions, hn::Load(kUint, group.control_decided));
+    }
+    return hn::Mul(collisions, hn::Set(kUint, Group::lookups_per_collision(medium_)));
+  }
+
   /// The final weights of rays that have ended, for methods that keep more than a weight.
   HWY_INLINE void finish(Group& group, uint32_t done) const {
     VecF rows[Group::kStoredRows];

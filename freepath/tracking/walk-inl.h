@@ -34,9 +34,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
-/// Groups in flight: enough to hide a miss of the last cache behind the arithmetic of the others
-/// (bench/README.md has the figures).
-inline constexpr int kGroups = 8;
+/// Groups in flight: enough to hide a miss of the last cache behind the arithmetic of the others,
+/// and few enough to stay in the nearest cache (bench/README.md has the figures).
+inline constexpr int kGroups = 6;
 
 /// A group steps through super-voxels until no more than one in kSearchingShare of its lanes
 /// still looks for its tentative collision; the others go on, and those resume in the next round.
@@ -87,6 +87,8 @@ class Walk {
       if (other[i].looking != 0) fetch(other[i]);
       Group& group = team[i];
       if (group.looking != 0) collide(group);
+    }
+    for (Group& group : team) {
       dealer_.retire(group);
       alive |= group.alive != 0;
     }
@@ -164,7 +166,6 @@ class Walk {
     const MaskF inside =
         segments_.leave(cursor, segment, hn::And(leaves, hn::Lt(segment.exit, cursor.end)));
     segments_.store(cursor, group.segments);
-    segments_.prefetch(group.segments);
     hn::Store(tau, kFloat, group.tau);
     hn::Store(rate, kFloat, group.rate);
     hn::Store(exit, kFloat, group.exit);

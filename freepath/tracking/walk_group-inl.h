@@ -26,8 +26,6 @@ struct WalkGroup {
   using Control = std::conditional_t<Tracker::kControl, typename Medium::Control, NoControl>;
 
   typename Segments::State segments;
-  typename Medium::State lookup;
-  Control control;
   HWY_ALIGN_MAX float rows[kStoredRows][kLanes];  ///< The method's own.
   HWY_ALIGN_MAX float tau[kLanes];        ///< Optical depth still to go to the tentative collision.
   HWY_ALIGN_MAX float drawn[kLanes];      ///< Optical depth from the last one to it.
@@ -54,6 +52,9 @@ struct WalkGroup {
   uint32_t escaped;
   uint32_t scattered;
   uint32_t absorbed;
+  // Last, since most media use but the first of their many components: all else stands together.
+  typename Medium::State lookup;
+  Control control;
 
   HWY_INLINE void load_rows(VecF (&values)[kStoredRows]) const {
     for (int row = 0; row < kRows; ++row) values[row] = hn::Load(kFloat, rows[row]);

@@ -37,20 +37,30 @@ class MediumEntry {
     HWY_ALIGN_MAX float inverse[3][kSize];
     HWY_ALIGN_MAX float cell[3][kSize];   ///< Whole numbers.
     HWY_ALIGN_MAX int32_t record[kSize];  ///< Where the bounds of that cell stand.
+    HWY_ALIGN_MAX float head[kSize];      ///< The first number there.
     HWY_ALIGN_MAX float begin[kSize];     ///< Where the ray enters the medium [world].
     HWY_ALIGN_MAX float length[kSize];    ///< How far from there to its end [world].
   };
 
   MediumEntry(const MediumView& medium, const RayStream& rays) : medium_(medium), rays_(rays) {}
 
-  /// Enters the chunk of rays that begins with slot `first`.
+  /// Enters the chunk of rays that begins with slot `first`, and asks for the next one.
   HWY_NOINLINE const Rows& enter(std::size_t first) {
     const std::size_t count = std::min(kChunk, rays_.size() - first);
     for (std::size_t i = 0; i < count; i += kLanes) enter_lanes(first + i, i);
+    prefetch(first + count);
     return rows_;
   }
 
  private:
+  HWY_INLINE void prefetch(std::size_t first) const {
+    const std::size_t count = std::min(kChunk, rays_.size() - first);
+    for (int axis = 0; axis < 3; ++axis) {
+      prefetch_row(rays_.origin[axis].data() + first, count);
+      prefetch_row(rays_.direction[axis].data() + first, count);
+    }
+    prefetch_row(rays_.t_max.data() + first, count);
+  }
   HWY_INLINE void enter_lanes(std::size_t first, std::size_t row);
 
   const MediumView& medium_;
@@ -123,6 +133,7 @@ HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
   }
   record = hn::Mul(record, hn::Set(kInt, medium_.component_count));
   hn::Store(record, kInt, rows_.record + row);
+  hn::Store(hn::GatherIndex(kFloat, medium_.cells, record), kFloat, rows_.head + row);
 }
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -39,6 +39,7 @@ WalkTable walk_table(const WalkOf& walk_of) {
   walks[1] = walk_of.template operator()<1>();
   walks[3] = walk_of.template operator()<3>();
   walks[4] = walk_of.template operator()<4>();
+  if constexpr (kMaxChannels > 8) walks[8] = walk_of.template operator()<8>();
   walks[kMaxChannels] = walk_of.template operator()<kMaxChannels>();
   return walks;
 }

@@ -37,7 +37,8 @@ const MethodInfo& info_of(const std::string& text, std::span<const MethodInfo> k
 
 void check_channels(const Medium& medium, const MediumChannels& channels) {
   if (channels.count < 1 || channels.count > kMaxChannels) {
-    fail("a path carries 1 to {} channels, not {}", kMaxChannels, channels.count);
+    fail("a path carries 1 to {} channels, not {}; CMake's FREEPATH_MAX_CHANNELS sets how many",
+         kMaxChannels, channels.count);
   }
   if (channels.components.size() != medium.components().size()) {
     fail("cross sections are given of {} components, but the medium has {}",

@@ -260,6 +260,11 @@ const std::vector<CertifiedMedium>& certified_media() {
     list.add_wavelengths("dense noise, eight wavelengths", 8,
                          {make_component(dense_noise(2), kRedAbsorption, kRedScattering)},
                          through_crooked(2));
+    if constexpr (kMaxChannels > 8) {  // a build for more than is usual
+      list.add_wavelengths("dense noise, as many wavelengths as a path carries", kMaxChannels,
+                           {make_component(dense_noise(2), kRedAbsorption, kRedScattering)},
+                           through_crooked(2));
+    }
     list.add("fixture A", FixtureA::medium(64, kFixtureVoxels).components(), ray, 64);
     return list.take();
   }();

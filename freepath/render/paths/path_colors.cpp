@@ -52,7 +52,8 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
                            const WalkSettings& walk)
     : scene_(scene), mode_(mode), wavelengths_(wavelengths), walk_(walk) {
   if (wavelengths < 1 || wavelengths > kMaxChannels) {
-    fail("a path carries 1 to {} wavelengths, not {}", kMaxChannels, wavelengths);
+    fail("a path carries 1 to {} wavelengths, not {}; CMake's FREEPATH_MAX_CHANNELS sets how many",
+         kMaxChannels, wavelengths);
   }
   const SpectrumValues first =
       mode == ColorMode::kRgb ? scene.spectra->in_rgb() : spectra_of_sample(0);
