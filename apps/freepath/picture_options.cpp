@@ -52,9 +52,9 @@ void add_camera_options(CLI::App& command, PictureOptions& o) {
                   "spectral, compare and plan: rgb]")
       ->group("Picture");
   command
-      .add_option("--wavelengths", o.wavelengths,
-                  fmt::format("That a path carries together with --color spectral, 1 to {}",
-                              kMaxChannels))
+      .add_option(
+          "--wavelengths", o.wavelengths,
+          fmt::format("That a path carries together with --color spectral, 1 to {}", kMaxChannels))
       ->capture_default_str()
       ->check(CLI::Range(1, kMaxChannels))
       ->group("Picture");
