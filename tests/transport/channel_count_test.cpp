@@ -44,7 +44,7 @@ MediumChannels channels(int count) {
   ComponentChannels& values = result.components.emplace_back();
   for (int c = 0; c < count; ++c) {
     values.sigma_s[c] = 0.02F + 0.01F * static_cast<float>(c * 3 % 8);
-    values.sigma_a[c] = 0.03F - 0.003F * static_cast<float>(c);
+    values.sigma_a[c] = 0.03F - 0.003F * static_cast<float>(c % 8);
   }
   return result;
 }
