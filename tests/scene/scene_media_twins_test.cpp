@@ -161,7 +161,7 @@ std::string coloured_scene(const std::string& methods) {
 }
 
 TEST_P(SceneTrackers, AgreeWithOnePathForEachChannel) {
-  static const std::vector<Picture> references = [] {
+  static const std::vector<Picture> kReferences = [] {
     std::vector<Picture> pictures;
     for (const ColorMode mode : kColorModes) {
       pictures.push_back(render_text(coloured_scene(R"("string tracker" "delta")"),
@@ -169,10 +169,10 @@ TEST_P(SceneTrackers, AgreeWithOnePathForEachChannel) {
     }
     return pictures;
   }();
-  for (std::size_t i = 0; i < references.size(); ++i) {
+  for (std::size_t i = 0; i < kReferences.size(); ++i) {
     const Picture picture = render_text(coloured_scene(GetParam()),
                                         {.mode = kColorModes[i], .samples = 128, .seed = 77});
-    expect_alike(name_of(kColorModes[i]), picture, references[i],
+    expect_alike(name_of(kColorModes[i]), picture, kReferences[i],
                  {.absolute = 2e-5, .largest_relative_error = 0.01});
   }
 }
