@@ -1,5 +1,7 @@
 // freepath render with several volumes, with RGB densities, and with options for each volume.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -121,11 +123,14 @@ TEST_F(OverlapRenderTest, AVectorGridIsThreeGridsBitForBit) {
   testing_volumes::write_nvdb_vectors(path("vectors.nvdb"), channels);
   const std::string options = " --albedo 0.9,0.7,0.5 --g 0.3 --density-scale 2 --spp 4";
   for (const std::string tracker : {" --tracker spectral", " --tracker delta"}) {
-    const Image three = render("three.vdb --grid red,green,blue" + options + tracker);
-    EXPECT_EQ(render("three.vdb --grid 0,1,2" + options + tracker).values, three.values);
-    EXPECT_EQ(render("vectors.vdb --grid red" + options + tracker).values, three.values);
-    EXPECT_EQ(render("vectors.nvdb --grid red" + options + tracker).values, three.values);
-    EXPECT_NE(render("three.vdb --grid blue,green,red" + options + tracker).values, three.values);
+    const auto values = [&](const char* volume) {
+      return render(fmt::format("{}{}{}", volume, options, tracker)).values;
+    };
+    const auto three = values("three.vdb --grid red,green,blue");
+    EXPECT_EQ(values("three.vdb --grid 0,1,2"), three);
+    EXPECT_EQ(values("vectors.vdb --grid red"), three);
+    EXPECT_EQ(values("vectors.nvdb --grid red"), three);
+    EXPECT_NE(values("three.vdb --grid blue,green,red"), three);
   }
 }
 
@@ -177,7 +182,7 @@ TEST_F(OverlapRenderTest, OptionsGoToVolumesInTheirOrder) {
                            "--environment 0 --sun none --density-scale 1000 --sigma-a 1 "
                            "--absorption analog --emission analog ";
   for (const std::string emission : {"--le 0 --le 3", "--emission 0 --emission 3"}) {
-    image = render("left.vdb right.vdb " + dark + emission);
+    image = render(fmt::format("left.vdb right.vdb {}{}", dark, emission));
     EXPECT_EQ(value(image, "R", 6, 8), 0) << emission;
     EXPECT_NEAR(value(image, "R", 17, 8), 3, 0.01) << emission;
   }
