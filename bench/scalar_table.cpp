@@ -16,7 +16,7 @@
 namespace freepath::bench {
 namespace {
 
-constexpr int kRepetitions = 9;
+constexpr int kScalarRepetitions = 9;
 constexpr double kBar = 3;  ///< How many times faster than a scalar loop the lanes should be.
 
 /// Sums over rays of something that each has.
@@ -169,7 +169,7 @@ class Rivals {
 };
 
 bool compare(const char* title, std::vector<Rivals> all, const std::vector<RayStream>& rays) {
-  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+  for (int repetition = 0; repetition < kScalarRepetitions; ++repetition) {
     for (Rivals& rivals : all) rivals.walk(rays);
   }
   fmt::print("\n{}\n{:<25}{:>10}{:>11}{:>8}{:>11} {:>11} {:>10}{:>9}\n", title, "", "trilinear",

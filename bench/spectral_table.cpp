@@ -19,7 +19,7 @@ namespace {
 
 /// Paths from each ray: their scatter about the ray's own mean is the variance that counts, as it
 /// is in a pixel.
-constexpr int kRepetitions = 16;
+constexpr int kSpectralRepetitions = 16;
 
 using Radiances = std::array<std::vector<double>, kChannels>;  ///< Of each ray.
 
@@ -159,10 +159,10 @@ class Paths {
 };
 
 /// A tracker, with a walk for all channels or one for each.
-class Contestant {
+class SpectralContestant {
  public:
-  Contestant(const std::string& tracker, const Medium& medium, Light light, std::size_t rays,
-             uint64_t seed)
+  SpectralContestant(const std::string& tracker, const Medium& medium, Light light,
+                     std::size_t rays, uint64_t seed)
       : name_(tracker) {
     WalkSettings settings;
     settings.tracker = tracker;
@@ -204,10 +204,10 @@ class Contestant {
     double sum = 0;
     double variance = 0;
     for (std::size_t ray = 0; ray < sums_[channel].size(); ++ray) {
-      const double mean = sums_[channel][ray] / kRepetitions;
+      const double mean = sums_[channel][ray] / kSpectralRepetitions;
       sum += mean;
-      variance +=
-          (squares_[channel][ray] / kRepetitions - mean * mean) * kRepetitions / (kRepetitions - 1);
+      variance += (squares_[channel][ray] / kSpectralRepetitions - mean * mean) *
+                  kSpectralRepetitions / (kSpectralRepetitions - 1);
     }
     const auto rays = static_cast<double>(sums_[channel].size());
     return {sum / rays, variance / rays};
@@ -226,8 +226,8 @@ class Contestant {
   /// Of a path for all channels, or of one for each together.
   double microseconds() const { return median(seconds_) * 1e6 / double(sums_[0].size()); }
 
-  bool agrees(const Contestant& other) const {
-    const double paths = double(sums_[0].size()) * kRepetitions;
+  bool agrees(const SpectralContestant& other) const {
+    const double paths = double(sums_[0].size()) * kSpectralRepetitions;
     bool same = true;
     for (int channel = 0; channel < kChannels; ++channel) {
       Mean mine = radiance(channel);
@@ -241,7 +241,7 @@ class Contestant {
 
   const std::string& name() const { return name_; }
   /// Run by run, since neighbours in time had the same machine.
-  double time_ratio(const Contestant& other) const {
+  double time_ratio(const SpectralContestant& other) const {
     std::vector<double> ratios;
     for (std::size_t run = 0; run < seconds_.size(); ++run) {
       ratios.push_back(seconds_[run] / other.seconds_[run]);
@@ -263,22 +263,22 @@ bool compare_spectral_costs(const std::string& title, const Medium& medium,
                             const std::vector<RayStream>& rays, Light light, int scatterings) {
   std::size_t count = 0;
   for (const RayStream& batch : rays) count += batch.size();
-  std::vector<Contestant> contestants;
+  std::vector<SpectralContestant> contestants;
   for (const char* tracker : {"per-wavelength", "spectral", "spectral-decomposition",
                               "hero-wavelength", "hero-wavelength:selection=throughput-albedo"}) {
     // Other random numbers for each, so that their means are independent.
     contestants.emplace_back(tracker, medium, light, count, contestants.size());
   }
-  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
-    for (Contestant& contestant : contestants) {
+  for (int repetition = 0; repetition < kSpectralRepetitions; ++repetition) {
+    for (SpectralContestant& contestant : contestants) {
       contestant.follow(rays, repetition, scatterings);
     }
   }
   fmt::print("\n{}\n{:<46}{:>9}{:>10}{:>10}{:>8}{:>26}\n", title, "", "us/path", "time",
              "rel. var.", "cost", "radiance");
-  const Contestant& first = contestants.front();
+  const SpectralContestant& first = contestants.front();
   bool same = true;
-  for (const Contestant& contestant : contestants) {
+  for (const SpectralContestant& contestant : contestants) {
     const bool agrees = contestant.agrees(first);
     const double variance = contestant.relative_variance();
     const double time = contestant.time_ratio(first);

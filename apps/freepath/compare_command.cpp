@@ -27,7 +27,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     R"(Renders a volume or a scene with every method given, in rounds, so that what slows the machine
 down meets all alike, and reports errors against a reference, their efficiency 1/(MSE · CPU time)
 relative to delta, the work they do, and whether they are biased. All combinations of --trackers,
@@ -48,7 +48,7 @@ Examples:
 
 Scenes are compared in rgb where --color says nothing else.)";
 
-struct Options {
+struct CompareOptions {
   PictureOptions picture;
   std::string folder;
   std::string trackers =
@@ -75,7 +75,7 @@ std::string now_text() {
 
 /// All combinations of the methods and interpolations.
 /// @param automatic what `auto` stands for
-std::vector<Configuration> read_configurations(const Options& options,
+std::vector<Configuration> read_configurations(const CompareOptions& options,
                                                const std::string& automatic) {
   std::vector<Configuration> configurations;
   const auto list_of = [](std::string_view option, const std::string& text) {
@@ -188,7 +188,7 @@ void write_report(const Comparison& comparison, const ReportContext& context,
   folder.write("report.html", to_html(page_of(comparison, context)));
 }
 
-ComparisonSettings read_settings(const CLI::App& command, const Options& options,
+ComparisonSettings read_settings(const CLI::App& command, const CompareOptions& options,
                                  const LoadedSubject& loaded) {
   ComparisonSettings settings;
   settings.configurations = read_configurations(options, loaded.automatic_tracker);
@@ -206,7 +206,7 @@ ComparisonSettings read_settings(const CLI::App& command, const Options& options
   return settings;
 }
 
-void run(const CLI::App& command, const Options& options) {
+void run(const CLI::App& command, const CompareOptions& options) {
   if (!options.reference.file.empty()) {
     for (const char* idle : {"--reference-time", "--reference-spp", "--cache"}) {
       if (command.count(idle) > 0)
@@ -240,7 +240,7 @@ void run(const CLI::App& command, const Options& options) {
   }
 }
 
-void add_comparison_options(CLI::App& command, Options& o) {
+void add_comparison_options(CLI::App& command, CompareOptions& o) {
   command.add_option("-o,--output", o.folder, "Folder for the report, made if it is missing")
       ->required();
   command
@@ -290,8 +290,8 @@ void add_comparison_options(CLI::App& command, Options& o) {
 void add_compare_command(CLI::App& program) {
   CLI::App* const command =
       program.add_subcommand("compare", "Measure trackers and estimators against each other");
-  command->footer(kFooter);
-  const auto options = std::make_shared<Options>();
+  command->footer(kCompareFooter);
+  const auto options = std::make_shared<CompareOptions>();
   options->picture.size = "320x180";
   add_comparison_options(*command, *options);
   add_picture_options(*command, options->picture);

@@ -22,7 +22,7 @@ namespace freepath::program {
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDiffFooter =
     R"(A and B are images of the same size, or B is constant:V or constant:R,G,B.
 
 Measures, over all finite pixels and the channels compared:
@@ -45,7 +45,7 @@ Examples:
 
 constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite
 
-struct Options {
+struct DiffOptions {
   std::string a, b;
   std::vector<std::string> channels;
   std::string prefix;
@@ -157,7 +157,7 @@ Side read_side(const std::string& text) {
 }
 
 /// The names of the channels to compare.
-std::vector<std::string> chosen_channels(const Options& options, const Image& image) {
+std::vector<std::string> chosen_channels(const DiffOptions& options, const Image& image) {
   if (!options.channels.empty()) return options.channels;
   if (!options.prefix.empty()) {
     return {options.prefix + ".R", options.prefix + ".G", options.prefix + ".B"};
@@ -209,7 +209,7 @@ ChannelDifference compare_channel(const std::string& name, const ChannelView& a,
   return result;
 }
 
-Difference compare(const Options& options) {
+Difference compare(const DiffOptions& options) {
   const Side a = read_side(options.a);
   const Side b = read_side(options.b);
   if (!a.image) fail("{}: A must be an image; only B may be constant", options.a);
@@ -312,7 +312,7 @@ void print_table(const Difference& difference) {
 }
 
 /// Whether every limit holds; says on standard error which does not.
-bool within_limits(const Options& options, const Difference& difference) {
+bool within_limits(const DiffOptions& options, const Difference& difference) {
   bool within = true;
   const auto exceeded = [&](const std::string& what) {
     fmt::print(stderr, "freepath: {}\n", what);
@@ -341,7 +341,7 @@ bool within_limits(const Options& options, const Difference& difference) {
   return within;
 }
 
-void run(const Options& options) {
+void run(const DiffOptions& options) {
   const Difference difference = compare(options);
   if (options.json) {
     print_json(difference);
@@ -355,7 +355,7 @@ void run(const Options& options) {
 
 void add_diff_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("diff", "Compare two images, with statistics");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DiffOptions>();
   command->add_option("A", options->a, "Image")->required();
   command->add_option("B", options->b, "Image, constant:V or constant:R,G,B")->required();
   auto* channels = command
@@ -374,7 +374,7 @@ void add_diff_command(CLI::App& program) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--max-z", options->max_z, "Exit with 1 if a channel's |z| is larger")
       ->check(CLI::NonNegativeNumber);
-  command->footer(kFooter);
+  command->footer(kDiffFooter);
   command->callback([options] { run(*options); });
 }
 

@@ -18,7 +18,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kGenerateFooter =
     R"(Kinds:
   cloud     a cumulus with a flat base; field density, 0 to 1
   smoke     a rising column; field density, 0 to 1
@@ -40,7 +40,7 @@ const std::map<std::string, Generator> kGenerators{
     {"cloud", generate_cloud}, {"smoke", generate_smoke}, {"fireball", generate_fireball},
     {"fog", generate_fog},     {"noise", generate_noise}, {"puffs", generate_puffs}};
 
-struct Options {
+struct GenerateOptions {
   std::string kind, output;
   ProceduralOptions volume;
   bool half = false;
@@ -51,7 +51,7 @@ void show_progress(double fraction) {
   std::fflush(stderr);
 }
 
-void run(Options& options) {
+void run(GenerateOptions& options) {
   if (std::filesystem::path(options.output).extension() != ".vdb") {
     fail("{}: a volume is written as OpenVDB; give the file a name that ends in .vdb",
          options.output);
@@ -70,10 +70,10 @@ void run(Options& options) {
 }  // namespace
 
 void add_generate_command(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GenerateOptions>();
   CLI::App* const command =
       program.add_subcommand("generate", "Make a procedural volume and write it to a .vdb file");
-  command->footer(kFooter);
+  command->footer(kGenerateFooter);
   command->add_option("KIND", options->kind, "cloud, smoke, fireball, fog, noise or puffs")
       ->required()
       ->check(CLI::IsMember(kGenerators));

@@ -17,7 +17,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kInfoFooter =
     R"(Lists the grids of a volume file (.vdb or .nvdb) and loads each that can be a density.
 --grid looks at one of them: a name (the first of that name, name[1] the second), or a number.
 
@@ -26,7 +26,7 @@ Examples:
   freepath info cloud.vdb --grid density
   freepath info cloud.nvdb --json)";
 
-struct Options {
+struct InfoOptions {
   std::string file, grid;
   bool json = false;
 };
@@ -275,7 +275,7 @@ nlohmann::json grid_json(const Described& grid) {
 
 /// Loads what can be loaded, one grid at a time being in memory.
 template <class Use>
-void for_each_grid(const Options& options, Use use) {
+void for_each_grid(const InfoOptions& options, Use use) {
   std::vector<GridInfo> grids = list_grids(options.file);
   if (!options.grid.empty()) {
     const GridInfo chosen = find_grid(options.file, grids, parse_grid_selection(options.grid));
@@ -292,7 +292,7 @@ void for_each_grid(const Options& options, Use use) {
   }
 }
 
-void run(const Options& options) {
+void run(const InfoOptions& options) {
   if (options.json) {
     nlohmann::json json{{"file", options.file}, {"grids", nlohmann::json::array()}};
     for_each_grid(options,
@@ -308,9 +308,9 @@ void run(const Options& options) {
 }  // namespace
 
 void add_info_command(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   CLI::App* const command = program.add_subcommand("info", "Show the grids of a volume file");
-  command->footer(kFooter);
+  command->footer(kInfoFooter);
   command->add_option("FILE", options->file, "Volume file (.vdb, .nvdb)")->required();
   command->add_option("--grid", options->grid, "Only this grid: name or number");
   command->add_flag("--json", options->json, "One JSON object on standard output");

@@ -28,7 +28,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kLabFooter =
     R"(Media that vary along one axis, whose free paths are known exactly: what trackers sample, their
 weights, what they cost, and how throughput evolves where channels differ. -o names a folder, which is
 made if it is missing; it gets report.html, lab.json, lab.csv and every plot as .svg. Only times depend
@@ -44,7 +44,7 @@ Examples:
   freepath lab fixture-a two-boxes -o boxes --paths 1e7 --absorption analog)";
 
 /// The options as they were typed.
-struct Options {
+struct LabCommandOptions {
   std::vector<std::string> settings;
   std::string folder, trackers, paths = "4e5", absorption = "weighted";
   uint64_t seed = 0;
@@ -89,7 +89,7 @@ uint64_t read_paths(const std::string& text) {
   return static_cast<uint64_t>(numbers[0]);
 }
 
-LabOptions read_options(const Options& options) {
+LabOptions read_options(const LabCommandOptions& options) {
   constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
                                     Choice<Absorption>{"weighted", Absorption::kWeighted}};
   LabOptions lab;
@@ -165,7 +165,7 @@ void print_table(const LabResult& result) {
   }
 }
 
-void run(const Options& options) {
+void run(const LabCommandOptions& options) {
   if (options.list) {
     print_list();
     return;
@@ -198,8 +198,8 @@ void run(const Options& options) {
 void add_lab_command(CLI::App& program) {
   CLI::App* const command = program.add_subcommand(
       "lab", "Trackers in one dimension, against exact free paths: an HTML report");
-  const auto options = std::make_shared<Options>();
-  Options& o = *options;
+  const auto options = std::make_shared<LabCommandOptions>();
+  LabCommandOptions& o = *options;
   command->add_option("settings", o.settings, "Settings to measure [all]; --list names them")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("-o,--output", o.folder, "Folder for the report");
@@ -212,7 +212,7 @@ void add_lab_command(CLI::App& program) {
       ->check(kWholeNumber);
   command->add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
   command->add_flag("--list", o.list, "List the settings");
-  command->footer(kFooter);
+  command->footer(kLabFooter);
   command->callback([options] { run(*options); });
 }
 

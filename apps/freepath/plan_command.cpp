@@ -24,7 +24,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kPlanFooter =
     R"(Renders a small picture of the volume or scene with every tracker that applies, some tenths of a
 second each, and predicts what the whole picture takes on this machine: look-ups of a path, and the
 time to a noise. Noise is the standard error of a pixel, root of the mean square over the picture,
@@ -39,7 +39,7 @@ Examples:
 /// Pixels of a pilot's picture: few enough for many samples of each, from which variance is known.
 constexpr double kPilotPixels = 64.0 * 36;
 
-struct Options {
+struct PlanOptions {
   PictureOptions picture;
   std::string transmittance = "ratio", interpolation = "stochastic";
   double noise = 0.01;
@@ -72,7 +72,7 @@ PictureSize pilot_size(const PictureSize& whole) {
           std::max(1, static_cast<int>(std::lround(whole.height * scale)))};
 }
 
-std::vector<PilotCandidate> tracker_candidates(const Options& options) {
+std::vector<PilotCandidate> tracker_candidates(const PlanOptions& options) {
   std::vector<PilotCandidate> candidates;
   for (const MethodInfo& info : tracker_infos()) {
     if (info.biased) continue;
@@ -110,7 +110,7 @@ class PilotLine {
 };
 
 /// Tries sizes of super-voxels with the best tracker: each makes a medium of the same fields.
-void plan_super_voxels(const Options& options, const PictureSize& size, const Medium& medium,
+void plan_super_voxels(const PlanOptions& options, const PictureSize& size, const Medium& medium,
                        const PilotSettings& settings, const PilotLine& line, PicturePlan& plan) {
   plan.chosen_edge = medium.super_voxels().cell_size;
   plan.super_voxel_count = medium.super_voxels().cell_count();
@@ -139,7 +139,7 @@ void plan_super_voxels(const Options& options, const PictureSize& size, const Me
   for (PilotResult& result : plan.super_voxels.results) result.candidate.subject = nullptr;
 }
 
-PicturePlan make_plan(const CLI::App& command, const Options& options) {
+PicturePlan make_plan(const CLI::App& command, const PlanOptions& options) {
   const LoadedSubject whole = load_subject(command, options.picture);
   const PictureSize size = pilot_size(whole.film);
   const LoadedSubject loaded = whole.medium ? subject_of_medium(options.picture, whole.medium, size)
@@ -194,7 +194,7 @@ void print_table(const PlanTable& table, const PicturePlan& plan, double noise,
   }
 }
 
-void print_plan(const PicturePlan& plan, const Options& options) {
+void print_plan(const PicturePlan& plan, const PlanOptions& options) {
   fmt::print("auto: {}, since {}\n\n", plan.automatic, plan.reason);
   print_table(plan.trackers, plan, options.noise, "tracker");
   if (!plan.trackers.best) {
@@ -245,7 +245,7 @@ nlohmann::ordered_json to_json(const PlanTable& table, const PicturePlan& plan, 
   return list;
 }
 
-void print_json(const PicturePlan& plan, const Options& options) {
+void print_json(const PicturePlan& plan, const PlanOptions& options) {
   const auto name_of_best = [](const PlanTable& table) {
     return table.best ? nlohmann::ordered_json(table.results[*table.best].candidate.name)
                       : nlohmann::ordered_json();
@@ -264,7 +264,7 @@ void print_json(const PicturePlan& plan, const Options& options) {
   fmt::print("{}\n", json.dump(2));
 }
 
-void run(const CLI::App& command, const Options& options) {
+void run(const CLI::App& command, const PlanOptions& options) {
   read_method(options.transmittance, "--transmittance", transmittance_infos());
   read_interpolation(options.interpolation);
   const PicturePlan plan = make_plan(command, options);
@@ -280,8 +280,8 @@ void run(const CLI::App& command, const Options& options) {
 void add_plan_command(CLI::App& program) {
   CLI::App* const command = program.add_subcommand(
       "plan", "Predict what a picture takes, and choose what to render it with");
-  command->footer(kFooter);
-  const auto options = std::make_shared<Options>();
+  command->footer(kPlanFooter);
+  const auto options = std::make_shared<PlanOptions>();
   command->add_option("--noise", options->noise, "Noise to predict the time to, relative")
       ->capture_default_str()
       ->check(kFiniteNumber & CLI::PositiveNumber);

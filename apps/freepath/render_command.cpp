@@ -17,7 +17,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRenderFooter =
     R"(Renders the densities of volume files (.vdb, .nvdb), without bias and without a limit to the
 number of scatterings. Several -o write the same picture several times; an .exr holds all channels,
 a .png the colour. Ctrl-C drops the paths under way, writes what there is, says how many samples
@@ -26,7 +26,7 @@ come before every pixel has its first sample, that is waited for only if it will
 (a second after Ctrl-C; as much time again and a second after --time): pixels without a sample are
 black with alpha 0, and counted in a warning, in --stats and in the .exr.
 
-Several volumes overlap as parts of one medium, each where its file puts it. Options of the medium
+Several volumes overlap as parts of one medium, each where its file puts it. RenderOptions of the medium
 are given once for all volumes, or once for each in the order of the files. Three grids, or a grid
 of vectors, are the densities of R, G and B. All trackers walk through such media but closed-form,
 which needs one homogeneous density.
@@ -56,7 +56,7 @@ Examples:
   freepath render smoke.%04d.vdb --frames 1-48 -o picture.%04d.exr --spp 64)";
 
 /// The options as they were typed.
-struct Options {
+struct RenderOptions {
   PictureOptions picture;
   FilmOptions film;
   std::string stats, frames;
@@ -67,7 +67,7 @@ struct Options {
   double exposure = 0;
 };
 
-RenderSettings read_settings(const Options& options) {
+RenderSettings read_settings(const RenderOptions& options) {
   RenderSettings settings = read_run_settings(options.picture);
   settings.samples = options.samples;
   settings.time_limit = options.time_limit;
@@ -79,7 +79,7 @@ RenderSettings read_settings(const Options& options) {
   return settings;
 }
 
-void run_scene(const CLI::App& command, const Options& options) {
+void run_scene(const CLI::App& command, const RenderOptions& options) {
   check_scene_options(command, options.picture);
   const auto given = [&](const char* name) { return command.count(name) > 0; };
   ScenePlan plan;
@@ -100,7 +100,7 @@ void run_scene(const CLI::App& command, const Options& options) {
   render_scene_file(plan);
 }
 
-void run(const CLI::App& command, const Options& options) {
+void run(const CLI::App& command, const RenderOptions& options) {
   if (is_scene(options.picture)) return run_scene(command, options);
   if (options.outputs.empty()) fail("-o, --output is required: the picture to write, .exr or .png");
   check_volume_options(command, options.picture);
@@ -127,7 +127,7 @@ void run(const CLI::App& command, const Options& options) {
   }
 }
 
-void add_output_options(CLI::App& command, Options& o) {
+void add_output_options(CLI::App& command, RenderOptions& o) {
   command.add_option("-o,--output", o.outputs, "Picture to write, .exr or .png; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -153,7 +153,7 @@ void add_output_options(CLI::App& command, Options& o) {
       ->group("Picture");
 }
 
-void add_method_options(CLI::App& command, Options& o) {
+void add_method_options(CLI::App& command, RenderOptions& o) {
   command
       .add_option("--tracker", o.tracker,
                   "Free-path sampling: " + method_names(tracker_infos()) + ", auto")
@@ -173,8 +173,8 @@ void add_method_options(CLI::App& command, Options& o) {
 
 void add_render_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Render volume files to pictures");
-  command->footer(kFooter);
-  const auto options = std::make_shared<Options>();
+  command->footer(kRenderFooter);
+  const auto options = std::make_shared<RenderOptions>();
   add_output_options(*command, *options);
   add_film_options(*command, options->film);
   add_method_options(*command, *options);

@@ -21,7 +21,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSlabFooter =
     R"(Light falls on the top of the first layer; all results are fractions of its flux, each with its
 standard error. The layers have no lateral bounds, no surfaces (a refractive index of 1) and
 Henyey-Greenstein scattering; paths through them take the same walk as a renderer's. --tau, --albedo
@@ -38,7 +38,7 @@ Examples:
   freepath slab --tau 8 --albedo 0.8 --tracker weighted-delta:rate-scale=2 --absorption analog)";
 
 /// The options as they were typed; read_* turn them into what the library takes.
-struct Options {
+struct SlabOptions {
   std::string tau, albedo = "1", g = "0";
   double mu0 = SlabSettings{}.mu0;
   bool diffuse = false;
@@ -85,7 +85,7 @@ std::vector<double> read_layer_values(const std::string& text, std::string_view 
   return values;
 }
 
-std::vector<SlabLayer> read_layers(const Options& options) {
+std::vector<SlabLayer> read_layers(const SlabOptions& options) {
   const std::vector<double> taus = read_taus(options.tau);
   const std::vector<double> albedos = read_layer_values(options.albedo, "--albedo", taus.size());
   const std::vector<double> gs = read_layer_values(options.g, "--g", taus.size());
@@ -104,7 +104,7 @@ uint64_t read_paths(const std::string& text) {
   return static_cast<uint64_t>(numbers[0]);
 }
 
-SlabSettings read_settings(const Options& options) {
+SlabSettings read_settings(const SlabOptions& options) {
   constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
                                     Choice<Absorption>{"weighted", Absorption::kWeighted}};
   SlabSettings settings;
@@ -149,7 +149,7 @@ void print_table(const SlabResult& result) {
   }
 }
 
-void run(const Options& options) {
+void run(const SlabOptions& options) {
   const std::vector<SlabLayer> layers = read_layers(options);
   const SlabSettings settings = read_settings(options);
   const ProgressBar bar(1, 0);
@@ -182,7 +182,7 @@ void run(const Options& options) {
   }
 }
 
-void add_layer_options(CLI::App& command, Options& o) {
+void add_layer_options(CLI::App& command, SlabOptions& o) {
   command
       .add_option("--tau", o.tau, "Optical thickness of each layer, T,T,...; the last may be inf")
       ->required();
@@ -197,7 +197,7 @@ void add_layer_options(CLI::App& command, Options& o) {
       ->excludes(mu0);
 }
 
-void add_method_options(CLI::App& command, Options& o) {
+void add_method_options(CLI::App& command, SlabOptions& o) {
   std::string trackers;
   for (const MethodInfo& info : tracker_infos()) {
     trackers += (trackers.empty() ? "" : ", ") + std::string(info.name);
@@ -218,7 +218,7 @@ void add_method_options(CLI::App& command, Options& o) {
       ->capture_default_str();
 }
 
-void add_run_options(CLI::App& command, Options& o) {
+void add_run_options(CLI::App& command, SlabOptions& o) {
   command.add_option("--paths", o.paths, "Paths to trace")->capture_default_str();
   command.add_option("--seed", o.seed, "Seed of the random numbers")
       ->capture_default_str()
@@ -241,11 +241,11 @@ void add_run_options(CLI::App& command, Options& o) {
 void add_slab_command(CLI::App& program) {
   CLI::App* const command = program.add_subcommand(
       "slab", "Reflectance and transmittance of plane-parallel layers, with standard errors");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SlabOptions>();
   add_layer_options(*command, *options);
   add_method_options(*command, *options);
   add_run_options(*command, *options);
-  command->footer(kFooter);
+  command->footer(kSlabFooter);
   command->callback([options] { run(*options); });
 }
 

@@ -14,7 +14,7 @@
 namespace freepath::program {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kTrackersFooter =
     R"(A method's options follow its name, wherever methods are named: NAME:OPTION=VALUE,OPTION=VALUE.
 
 Examples:
@@ -110,7 +110,7 @@ void run(bool json) {
 void add_trackers_command(CLI::App& program) {
   CLI::App* const command =
       program.add_subcommand("trackers", "List the trackers and transmittance estimators");
-  command->footer(kFooter);
+  command->footer(kTrackersFooter);
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print one JSON object");
   command->callback([json] { run(*json); });

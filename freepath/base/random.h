@@ -44,6 +44,9 @@ constexpr float uniform_from_bits(uint32_t bits) {
   return static_cast<float>(bits >> 8) * 0x1p-24F;
 }
 
+/// The largest float below 1, at which what rounding would lift to 1 is held.
+inline constexpr float kBelowOne = 1.0F - 0x1p-24F;
+
 /// Uniform in (0,1], never 0, with a relative precision of 2^-24 down to 2^-32, so that the
 /// logarithm of it reaches optical depths of 22.
 constexpr float open_uniform_from_bits(uint32_t bits) {

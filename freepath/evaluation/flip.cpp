@@ -132,18 +132,17 @@ struct SensitivityTerm {
 /// What eyes see of a channel at a distance [Andersson20, Sec. 4.1.1].
 Plane filter_by_sensitivity(const Plane& plane, const Extent& size,
                             const std::vector<SensitivityTerm>& terms, double pixels_per_degree) {
-  constexpr double kPi = std::numbers::pi;
   constexpr double kWidest = 0.04;  // of all terms; one radius serves all channels
-  const int radius =
-      static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
+  const int radius = static_cast<int>(std::ceil(
+      3 * std::sqrt(kWidest / (2 * std::numbers::pi * std::numbers::pi)) * pixels_per_degree));
   Plane sum(plane.size(), 0.0F);
   double whole = 0;
   for (const auto& [a, b] : terms) {
     const Kernel kernel = make_kernel(radius, [&, b = b](double i) {
       const double x = i / pixels_per_degree;
-      return std::exp(-kPi * kPi * x * x / b);
+      return std::exp(-std::numbers::pi * std::numbers::pi * x * x / b);
     });
-    const double weight = a * std::sqrt(kPi / b);
+    const double weight = a * std::sqrt(std::numbers::pi / b);
     whole += weight * sum_of(kernel) * sum_of(kernel);
     const Plane part = filter(plane, size, kernel, kernel);
     for (std::size_t i = 0; i < sum.size(); ++i) {

@@ -15,7 +15,7 @@
 namespace freepath {
 namespace {
 
-constexpr std::size_t kPathsPerChunk = 8192;
+constexpr std::size_t kPathsTimedTogether = 8192;
 /// Rays that a path may take to its last scattering: rates so low that it takes more are refused.
 constexpr int kMostRays = 20'000;
 /// That a weight in a table has ended.
@@ -159,11 +159,11 @@ void walk_all(const LabSetting& setting, const LabWalk& walk, Absorption absorpt
     fail("'{}' carries one channel a path", walk.tracker);
   }
   if (goes_on && !goes_on()) fail("interrupted");
-  const uint64_t chunks = (walk.paths + kPathsPerChunk - 1) / kPathsPerChunk;
+  const uint64_t chunks = (walk.paths + kPathsTimedTogether - 1) / kPathsTimedTogether;
   tbb::parallel_for(tbb::blocked_range<uint64_t>(0, chunks, 1), [&](const auto& range) {
     for (uint64_t i = range.begin(); i < range.end(); ++i) {
-      const uint64_t first = i * kPathsPerChunk;
-      walk_chunk(walker, first, std::min<uint64_t>(kPathsPerChunk, walk.paths - first));
+      const uint64_t first = i * kPathsTimedTogether;
+      walk_chunk(walker, first, std::min<uint64_t>(kPathsTimedTogether, walk.paths - first));
     }
   });
 }

@@ -37,7 +37,7 @@ RenderSettings settings_of(const PilotSettings& settings, const PilotCandidate& 
 }
 
 /// Sums over the rounds of a candidate.
-struct Tally {
+struct PilotTally {
   double cpu_seconds = 0;
   uint64_t samples = 0, lookups = 0, overflows = 0;
   std::vector<double> costs;
@@ -46,7 +46,7 @@ struct Tally {
 /// One round; an Error becomes the refusal.
 /// @return false if the caller wished to stop
 bool run_round(const Subject& subject, const PilotSettings& settings, uint64_t seed,
-               const ProgressFunction& progress, PilotResult& result, Tally& tally) {
+               const ProgressFunction& progress, PilotResult& result, PilotTally& tally) {
   const double cpu_before = process_cpu_seconds();
   try {
     const RenderResult rendered =
@@ -88,7 +88,7 @@ std::vector<PilotResult> run_pilots(const Subject& subject,
     result.candidate = candidate;
     result.is_biased = is_biased(candidate.configuration);
   }
-  std::vector<Tally> tallies(candidates.size());
+  std::vector<PilotTally> tallies(candidates.size());
   const auto steps = static_cast<double>(candidates.size() * settings.rounds);
   for (int round = 0; round < settings.rounds; ++round) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -17,7 +17,7 @@
 namespace freepath::io {
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
+constexpr std::size_t kNvdbChunkBytes = std::size_t{1} << 20;
 
 /// A node or leaf that a parent refers to.
 struct NodePlace {
@@ -119,7 +119,7 @@ class TreeWalk {
 };
 
 /// Leaves in a row, as they stand in the grid.
-struct LeafChunk {
+struct NvdbChunk {
   NodeBuffer buffer;
   std::size_t size = 0;
   std::size_t first = 0, last = 0;  ///< Half-open range of leaves.
@@ -135,10 +135,10 @@ constexpr std::size_t largest_leaf() {
 }
 
 template <class Build>
-std::shared_ptr<LeafChunk> read_chunk(NvdbBytes& bytes, const std::vector<NodePlace>& leaves,
+std::shared_ptr<NvdbChunk> read_chunk(NvdbBytes& bytes, const std::vector<NodePlace>& leaves,
                                       std::size_t first) {
   if (first == leaves.size()) return nullptr;
-  auto chunk = std::make_shared<LeafChunk>();
+  auto chunk = std::make_shared<NvdbChunk>();
   chunk->first = first;
   const uint64_t begin = leaves[first].offset;
   uint64_t end = begin;
@@ -146,7 +146,7 @@ std::shared_ptr<LeafChunk> read_chunk(NvdbBytes& bytes, const std::vector<NodePl
   for (; leaf < leaves.size(); ++leaf) {
     const uint64_t next = leaf + 1 < leaves.size() ? leaves[leaf + 1].offset : bytes.size();
     const uint64_t leaf_end = std::min<uint64_t>(next, leaves[leaf].offset + largest_leaf<Build>());
-    if (leaf_end - begin > kChunkBytes) break;
+    if (leaf_end - begin > kNvdbChunkBytes) break;
     end = leaf_end;
   }
   chunk->last = leaf;
@@ -167,7 +167,7 @@ std::size_t leaf_size(const Leaf& leaf) {
 }
 
 template <class Build>
-GridScan take_chunk(const VolumeFile& file, const LeafChunk& chunk,
+GridScan take_chunk(const VolumeFile& file, const NvdbChunk& chunk,
                     const std::vector<NodePlace>& leaves, const GridAssembly& assembly) {
   using Leaf = typename nanovdb::NanoLeaf<Build>::DataType;
   using Value = typename Leaf::ValueType;
@@ -197,36 +197,36 @@ template <class Build>
 GridScan read_leaves(const VolumeFile& file, NvdbBytes& bytes, const std::vector<NodePlace>& leaves,
                      const GridAssembly& assembly) {
   std::size_t next = 0;
-  return scan_chunks<LeafChunk>(
+  return scan_chunks<NvdbChunk>(
       [&] {
         auto chunk = read_chunk<Build>(bytes, leaves, next);
         if (chunk) next = chunk->last;
         return chunk;
       },
-      [&](const LeafChunk& chunk) { return take_chunk<Build>(file, chunk, leaves, assembly); });
+      [&](const NvdbChunk& chunk) { return take_chunk<Build>(file, chunk, leaves, assembly); });
 }
 
-struct ReadGrid {
+struct ReadNvdbGrid {
   std::unique_ptr<GridAssembly> assembly;
   GridScan scan;
 };
 
 template <class Build>
-ReadGrid read_grid_as(const VolumeFile& file, const NvdbGrid& grid, const GridInfo& info,
-                      const LoadOptions& options, bool keep_values) {
+ReadNvdbGrid read_grid_as(const VolumeFile& file, const NvdbGrid& grid, const GridInfo& info,
+                          const LoadOptions& options, bool keep_values) {
   NvdbBytes bytes(file, grid.extent);
   const NvdbHead head = read_nvdb_head(file, grid, bytes);
   TreeWalk<Build> walk(file, bytes);
   walk.read(head.node_offsets[3]);
-  ReadGrid result;
+  ReadNvdbGrid result;
   result.assembly = std::make_unique<GridAssembly>(file.name(), info.name, options,
                                                    std::move(walk.layout), keep_values);
   result.scan = read_leaves<Build>(file, bytes, walk.leaves, *result.assembly);
   return result;
 }
 
-using GridReader = ReadGrid (*)(const VolumeFile&, const NvdbGrid&, const GridInfo&,
-                                const LoadOptions&, bool);
+using GridReader = ReadNvdbGrid (*)(const VolumeFile&, const NvdbGrid&, const GridInfo&,
+                                    const LoadOptions&, bool);
 
 /// The reader for a type of grid, null where there is none.
 GridReader reader_of(nanovdb::GridType type) {
@@ -283,7 +283,7 @@ std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file) {
     const GridReader read = reader_of(grids[i].type);
     if (read == nullptr) continue;
     try {
-      const ReadGrid result = read(file, grids[i], infos[i], {}, false);
+      const ReadNvdbGrid result = read(file, grids[i], infos[i], {}, false);
       result.assembly->describe(result.scan, infos[i]);
     } catch (const std::exception& error) {
       set_failure(file.name(), error.what(), infos[i]);
@@ -298,7 +298,7 @@ std::vector<LoadedField> load_nvdb_fields(const VolumeFile& file, const LoadOpti
   const GridInfo& info = find_grid(file.name(), infos, options.selection);
   check_selected(file.name(), info, options);
   const NvdbGrid& grid = grids[static_cast<std::size_t>(info.index)];
-  ReadGrid result = reader_of(grid.type)(file, grid, info, options, true);
+  ReadNvdbGrid result = reader_of(grid.type)(file, grid, info, options, true);
   return std::move(*result.assembly).finish(info, result.scan);
 }
 

@@ -26,7 +26,7 @@ namespace {
 
 using LeafMask = openvdb::util::NodeMask<3>;
 constexpr std::size_t kLeafMaskBytes = 64;
-constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
+constexpr std::size_t kVdbChunkBytes = std::size_t{1} << 20;
 
 void initialize_openvdb() {
   static const bool kDone = (openvdb::initialize(), true);
@@ -181,7 +181,7 @@ class TopologyWalk {
 };
 
 /// Some leaves in a row, as they stand in the file.
-struct LeafChunk {
+struct VdbChunk {
   std::vector<std::byte> bytes;
   std::vector<std::size_t> ends;  ///< Where each leaf ends in `bytes`.
   std::size_t first_leaf = 0;
@@ -195,12 +195,12 @@ class ChunkReader {
       : cursor_(file, offset), format_(format), leaves_(leaves) {}
 
   /// The next chunk, null behind the last.
-  std::shared_ptr<LeafChunk> next() {
+  std::shared_ptr<VdbChunk> next() {
     if (leaf_ == leaves_) return nullptr;
-    auto chunk = std::make_shared<LeafChunk>();
+    auto chunk = std::make_shared<VdbChunk>();
     chunk->first_leaf = leaf_;
     const uint64_t begin = cursor_.offset();
-    while (leaf_ < leaves_ && cursor_.offset() - begin < kChunkBytes) {
+    while (leaf_ < leaves_ && cursor_.offset() - begin < kVdbChunkBytes) {
       const auto mask = mask_from<LeafMask>(cursor_.peek(0, kLeafMaskBytes));
       cursor_.skip(kLeafMaskBytes +
                    vdb_value_block(cursor_, kLeafMaskBytes, format_, kLeafVoxels, mask.countOn()));
@@ -220,7 +220,7 @@ class ChunkReader {
 };
 
 template <class T>
-GridScan take_chunk(const LeafChunk& chunk, const VdbDirectory& directory, const VdbGrid& grid,
+GridScan take_chunk(const VdbChunk& chunk, const VdbDirectory& directory, const VdbGrid& grid,
                     const GridAssembly& assembly) {
   GridScan scan;
   ValueDecoder decoder(directory, grid);
@@ -243,9 +243,9 @@ template <class T>
 GridScan read_leaves(const VolumeFile& file, uint64_t offset, const VdbDirectory& directory,
                      const VdbGrid& grid, const GridAssembly& assembly) {
   ChunkReader reader(file, offset, format_of<T>(grid), assembly.leaf_count());
-  return scan_chunks<LeafChunk>(
+  return scan_chunks<VdbChunk>(
       [&] { return reader.next(); },
-      [&](const LeafChunk& chunk) { return take_chunk<T>(chunk, directory, grid, assembly); });
+      [&](const VdbChunk& chunk) { return take_chunk<T>(chunk, directory, grid, assembly); });
 }
 
 struct PlacedTransform {
@@ -344,24 +344,24 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file, const VdbDirect
 }
 
 /// Reads the voxels of a grid; the assembly has no bricks unless `keep_values`.
-struct ReadGrid {
+struct ReadVdbGrid {
   std::unique_ptr<GridAssembly> assembly;
   GridScan scan;
 };
 
 template <class T>
-ReadGrid read_grid(const VolumeFile& file, const VdbDirectory& directory, const VdbGrid& grid,
-                   const std::string& name, const LoadOptions& options, bool keep_values) {
+ReadVdbGrid read_grid(const VolumeFile& file, const VdbDirectory& directory, const VdbGrid& grid,
+                      const std::string& name, const LoadOptions& options, bool keep_values) {
   TopologyWalk<T> walk(file, read_transform(file, directory, grid).end, directory, grid);
-  ReadGrid result;
+  ReadVdbGrid result;
   result.assembly =
       std::make_unique<GridAssembly>(file.name(), name, options, walk.read(), keep_values);
   result.scan = read_leaves<T>(file, walk.offset(), directory, grid, *result.assembly);
   return result;
 }
 
-ReadGrid read_grid(const VolumeFile& file, const VdbDirectory& directory, const GridInfo& info,
-                   const LoadOptions& options, bool keep_values) {
+ReadVdbGrid read_grid(const VolumeFile& file, const VdbDirectory& directory, const GridInfo& info,
+                      const LoadOptions& options, bool keep_values) {
   const VdbGrid& grid = directory.grids[static_cast<std::size_t>(info.index)];
   const VdbGrid& tree =
       grid.tree_of < 0 ? grid : directory.grids[static_cast<std::size_t>(grid.tree_of)];
@@ -381,7 +381,7 @@ std::vector<GridInfo> list_vdb_grids(const VolumeFile& file) {
   for (GridInfo& info : grids) {
     if (channels_of(info.type) == 0) continue;
     try {
-      const ReadGrid read = read_grid(file, directory, info, {}, false);
+      const ReadVdbGrid read = read_grid(file, directory, info, {}, false);
       read.assembly->describe(read.scan, info);
     } catch (const std::exception& error) {
       set_failure(file.name(), error.what(), info);
@@ -395,7 +395,7 @@ std::vector<LoadedField> load_vdb_fields(const VolumeFile& file, const LoadOptio
   const std::vector<GridInfo> grids = describe_directory(file, directory);
   const GridInfo& info = find_grid(file.name(), grids, options.selection);
   check_selected(file.name(), info, options);
-  ReadGrid read = read_grid(file, directory, info, options, true);
+  ReadVdbGrid read = read_grid(file, directory, info, options, true);
   return std::move(*read.assembly).finish(info, read.scan);
 }
 

@@ -11,8 +11,6 @@ namespace {
 /// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
 constexpr float kLargestThroughput = 1e28F;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 Spectrum albedo_of(const Component& component) {
   const Spectrum sigma_t = component.sigma_t();
   Spectrum albedo(0.0F);
@@ -40,7 +38,7 @@ void set_ray(RayStream& rays, std::size_t slot, const Vec3f& origin, const Vec3f
     rays.origin[axis][slot] = origin[axis];
     rays.direction[axis][slot] = direction[axis];
   }
-  rays.t_max[slot] = kInfinity;
+  rays.t_max[slot] = std::numeric_limits<float>::infinity();
 }
 
 void copy_ray(RayStream& rays, std::size_t from, std::size_t to) {

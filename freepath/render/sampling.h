@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "freepath/base/random.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -60,7 +61,6 @@ struct AliasChoice {
 
 /// Draws an entry in constant time.
 inline AliasChoice choose(std::span<const AliasEntry> table, float u) {
-  constexpr float kBelowOne = 1.0F - 0x1p-24F;
   const float scaled = u * static_cast<float>(table.size());
   const uint32_t column =
       std::min(static_cast<uint32_t>(scaled), static_cast<uint32_t>(table.size() - 1));

@@ -10,7 +10,7 @@ namespace freepath {
 
 namespace {
 
-constexpr double kMargin = 16;
+constexpr double kBarMargin = 16;
 constexpr double kRow = 32;  // height of a bar and the gap to the next, if nothing else is given
 constexpr double kNameGap = 10;
 constexpr double kValueGap = 8;
@@ -61,7 +61,7 @@ double right_end(const ChartBar& bar, const BarLayout& layout) {
 }
 
 BarLayout layout_of(const BarChart& chart) {
-  BarLayout layout{wrapped(chart.title, kTitleSize, chart.width - 2 * kMargin),
+  BarLayout layout{wrapped(chart.title, kTitleSize, chart.width - 2 * kBarMargin),
                    {},
                    {scale_of(chart.axis, range_of(chart), AxisRoom::kNone)}};
   double names = 0;
@@ -73,15 +73,15 @@ BarLayout layout_of(const BarChart& chart) {
   }
   const auto title_lines = static_cast<double>(layout.title.size());
   SvgBox& plot = layout.plot;
-  plot.top = layout.title.empty() ? kMargin : 24 + 20 * title_lines;
+  plot.top = layout.title.empty() ? kBarMargin : 24 + 20 * title_lines;
   const auto rows = static_cast<double>(std::max<std::size_t>(1, chart.bars.size()));
   if (chart.height > 0) {
     layout.row = std::max(12.0, (chart.height - plot.top - kBottomAxisHeight - 4) / rows);
   }
   plot.bottom = plot.top + layout.row * rows;
-  plot.left = kMargin + std::min(names, 0.45 * chart.width) + kNameGap;
+  plot.left = kBarMargin + std::min(names, 0.45 * chart.width) + kNameGap;
   // Beyond the longest bar there is room for its value.
-  plot.right = chart.width - kMargin - values - kValueGap;
+  plot.right = chart.width - kBarMargin - values - kValueGap;
   layout.height = plot.bottom + kBottomAxisHeight + 4;
   PlotAxis& axis = layout.axis;
   axis.from = plot.left;
@@ -137,7 +137,7 @@ std::string to_svg(const BarChart& chart) {
   }
   svg.end_clip();
   draw_bottom_axis(svg, layout.axis, chart.axis.label, plot);
-  const double names = plot.left - kNameGap - kMargin;
+  const double names = plot.left - kNameGap - kBarMargin;
   for (std::size_t i = 0; i < chart.bars.size(); ++i) {
     const ChartBar& bar = chart.bars[i];
     const double baseline = layout.middle(i) + 4.5;

@@ -86,7 +86,7 @@ class BodyWriter {
   bool in_figures_ = false;
 };
 
-std::string style_sheet() {
+std::string page_style() {
   std::string style = fmt::format(":root{{{}}}\n", kPageLightColours);
   style += fmt::format("@media screen and (prefers-color-scheme:dark){{:root{{{}}}}}\n",
                        kPageDarkColours);
@@ -115,7 +115,7 @@ std::string head_html(const std::string& title) {
 <script>{}</script>
 </head>
 )html",
-      kPolicy, title, style_sheet(), kPageFirstScript);
+      kPolicy, title, page_style(), kPageFirstScript);
 }
 
 std::string bar_html(const std::string& contents) {

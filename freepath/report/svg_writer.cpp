@@ -26,7 +26,7 @@ std::string variables(const ChartInks& inks, const Palette& palette) {
 
 /// The style sheet of every chart. That of a page outweighs the reader's preference where it names
 /// a theme, since its selectors are more specific.
-std::string style_sheet() {
+std::string drawing_style() {
   const std::string light = variables(kLightInks, kLightPalette);
   const std::string dark = variables(kDarkInks, kDarkPalette);
   std::string result = fmt::format(
@@ -140,7 +140,7 @@ SvgWriter::SvgWriter(double width, double height, std::string_view title,
       R"(-apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif">)",
       box, coordinate(width), coordinate(height), kLightInks.ink, escape_markup(summary));
   add("<title>{}</title>", escape_markup(title));
-  add("<style>\n{}\n</style>", style_sheet());
+  add("<style>\n{}\n</style>", drawing_style());
   add(R"(<rect class="fpc-paper" width="{}" height="{}" fill="{}"/>)", coordinate(width),
       coordinate(height), kLightInks.paper);
 }

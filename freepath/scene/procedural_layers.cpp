@@ -80,7 +80,7 @@ std::vector<Field> generate_puffs(const ProceduralOptions& options) {
   using namespace procedural;
   const GridShape shape = grid_over(
       Box3f(Vec3f(-kHalf, 0, -kHalf), Vec3f(kHalf, kLongestSide, kHalf)), options.resolution);
-  const std::vector<Sphere> puffs = place_puffs(options.seed);
+  const std::vector<procedural::Sphere> puffs = place_puffs(options.seed);
   const SphereUnion spheres(puffs);
   const std::array<std::string, 1> names = {"density"};
   return sample_fields(

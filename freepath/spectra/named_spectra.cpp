@@ -69,7 +69,7 @@ constexpr auto kEntries = std::to_array<Entry>({
      }},
 });
 
-constexpr auto kNames = [] {
+constexpr auto kSpectrumNames = [] {
   std::array<std::string_view, kEntries.size()> names;
   for (std::size_t i = 0; i < names.size(); ++i) names[i] = kEntries[i].name;
   return names;
@@ -77,12 +77,12 @@ constexpr auto kNames = [] {
 
 }  // namespace
 
-std::span<const std::string_view> spectrum_names() { return kNames; }
+std::span<const std::string_view> spectrum_names() { return kSpectrumNames; }
 
 LinearSpectrum named_spectrum(std::string_view name) {
   const auto* const found = std::ranges::find(kEntries, name, &Entry::name);
   if (found != kEntries.end()) return found->make();
-  const std::string_view nearest = nearest_name(name, kNames);
+  const std::string_view nearest = nearest_name(name, kSpectrumNames);
   if (nearest.empty()) fail("there is no spectrum '{}'", name.substr(0, 60));
   fail("there is no spectrum '{}'; did you mean '{}'?", name.substr(0, 60), nearest);
 }

@@ -19,7 +19,7 @@ constexpr RgbPrimaries kAcesAp0 = {{0.7347, 0.2653}, {0.0000, 1.0000}, {0.0001, 
 constexpr RgbPrimaries kAcesAp1 = {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}};
 constexpr Chromaticity kAcesWhite = {0.32168, 0.33767};
 
-constexpr auto kNames =
+constexpr auto kColorSpaceNames =
     std::to_array<std::string_view>({"srgb", "dci-p3", "rec2020", "aces-cg", "aces2065-1"});
 
 /// Each nanometre's share in the colour goes to the two nodes beside it as if the reflectance were
@@ -66,7 +66,7 @@ RgbColorSpace::RgbColorSpace(std::string name, const RgbPrimaries& primaries,
 
 RgbColorSpace::~RgbColorSpace() = default;
 
-std::span<const std::string_view> rgb_color_space_names() { return kNames; }
+std::span<const std::string_view> rgb_color_space_names() { return kColorSpaceNames; }
 
 const RgbColorSpace& rgb_color_space(std::string_view name) {
   if (name == "srgb") {
@@ -89,7 +89,7 @@ const RgbColorSpace& rgb_color_space(std::string_view name) {
     static const RgbColorSpace kSpace("aces2065-1", kAcesAp0, daylight(kAcesWhite));
     return kSpace;
   }
-  const std::string_view nearest = nearest_name(name, kNames);
+  const std::string_view nearest = nearest_name(name, kColorSpaceNames);
   if (nearest.empty()) fail("there is no colour space '{}'", name);
   fail("there is no colour space '{}'; did you mean '{}'?", name, nearest);
 }

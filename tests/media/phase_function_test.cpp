@@ -18,11 +18,9 @@ using testing::check_chi_square;
 using testing::chi_square_test;
 using testing::RunningStatistics;
 
-constexpr double kPi = std::numbers::pi;
-
 /// The textbook's formula in double precision [Henyey41].
 double reference(double g, double cosine) {
-  return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+  return (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
 /// P(cosine ≤ c), the integral of the reference.
@@ -57,7 +55,8 @@ TEST_P(HenyeyGreensteinTest, IntegratesToOneAndToItsMeanCosine) {
     const Vec3f before(0, 0, 1);
     const Vec3f after(static_cast<float>(std::sin(angle)), 0,
                       static_cast<float>(sign * std::cos(angle)));
-    const double value = phase_.evaluate(before, after) * 2 * kPi * 8 * q * q * q / kPoints;
+    const double value =
+        phase_.evaluate(before, after) * 2 * std::numbers::pi * 8 * q * q * q / kPoints;
     norm += value;
     moment += value * sign * (1 - distance2 / 2);
   }
@@ -88,7 +87,7 @@ TEST_P(HenyeyGreensteinTest, SamplesFollowTheDensity) {
     const int bin = static_cast<int>(reference_cdf(g_, cosine) * kCosines);
     const double azimuth =
         std::atan2(sample.direction.dot(frame.bitangent), sample.direction.dot(frame.tangent));
-    const int sector = static_cast<int>((azimuth / (2 * kPi) + 0.5) * kAzimuths);
+    const int sector = static_cast<int>((azimuth / (2 * std::numbers::pi) + 0.5) * kAzimuths);
     ++counts[std::clamp(bin, 0, kCosines - 1) * kAzimuths + std::clamp(sector, 0, kAzimuths - 1)];
   }
   const std::vector<double> expected(counts.size(), 1.0 * kSamples / counts.size());

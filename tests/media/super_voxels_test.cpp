@@ -14,6 +14,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
+#include "tests/media/nearest_voxel.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {
@@ -75,11 +76,6 @@ void for_each_cell(const SuperVoxels& cells, Function f) {
       for (int z = 0; z < cells.counts.z; ++z) f(Vec3i(x, y, z));
     }
   }
-}
-
-Vec3i nearest_voxel(const Vec3d& p) {
-  return {static_cast<int>(std::floor(p.x + 0.5)), static_cast<int>(std::floor(p.y + 0.5)),
-          static_cast<int>(std::floor(p.z + 0.5))};
 }
 
 /// How far a point's values lie outside the bounds of a cell.

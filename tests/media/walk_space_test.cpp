@@ -15,6 +15,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/media/medium.h"
+#include "tests/media/nearest_voxel.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {
@@ -84,11 +85,6 @@ Vec3d mapped(const Vec3d& point, const AffineMap& map) {
 /// Index point for a place counted from the first voxel of a field's index.
 Vec3d index_of(const Field& field, const Vec3d& place) {
   return place + Vec3d(field.voxels.origin()) - Vec3d(0.5);
-}
-
-Vec3i nearest_voxel(const Vec3d& p) {
-  return {static_cast<int>(std::floor(p.x + 0.5)), static_cast<int>(std::floor(p.y + 0.5)),
-          static_cast<int>(std::floor(p.z + 0.5))};
 }
 
 TEST(WalkSpace, ItsMapsAgreeWithTheWayThroughTheWorld) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -27,7 +28,7 @@ struct Cells {
 };
 
 /// By differences of the parameterisation: independent of what is tested.
-Cells cells_of(const Reference& shape, const Matrix4d& place) {
+Cells cells_of(const ShapeReference& shape, const Matrix4d& place) {
   constexpr int kSteps = 240;
   constexpr double kStep = 1.0 / kSteps;
   Cells cells;
@@ -59,7 +60,7 @@ class EveryAreaShape : public ::testing::TestWithParam<std::tuple<int, bool>> {
     description_ = shape_of(shape_.geometry, place_, 5);
     description_.first_primitive = 7;
   }
-  Reference shape_;
+  ShapeReference shape_;
   Matrix4d place_;
   SurfaceShape description_;
 };
@@ -140,7 +141,7 @@ TEST_P(EveryAreaShape, FillsTheSolidAngleThatIsSeen) {
   const AreaShape area(description_, Vec3d(0));
   const Surfaces surfaces = surfaces_of(description_);
   RandomSurfaces random(55 + std::get<0>(GetParam()));
-  const double sphere = 4 * kPi;
+  const double sphere = 4 * std::numbers::pi;
   for (int place = 0; place < 4; ++place) {
     Vec3f from(random.direction() * random.uniform(2.5, 4));
     if (place == 3) from = Vec3f(random.in_box(0.3));  // within closed shapes
@@ -172,7 +173,7 @@ TEST(AreaShape, SphereFromOutsideIsDrawnUniformlyInItsCone) {
     const double sine = 0.5 / distance;
     const double one_minus_cosine = sine * sine / (1 + std::sqrt(1 - sine * sine));
     const AreaSample drawn = area.sample_from(from, 0, 0.3F, 0.6F);
-    EXPECT_NEAR(drawn.pdf * 2 * kPi * one_minus_cosine, 1, 1e-5);
+    EXPECT_NEAR(drawn.pdf * 2 * std::numbers::pi * one_minus_cosine, 1, 1e-5);
     // The share of the cone within the direction is the first number.
     const Vec3d direction = (Vec3d(drawn.position) - Vec3d(from)).normalized();
     const double sine2 = 1 - direction.z * direction.z;
@@ -182,7 +183,8 @@ TEST(AreaShape, SphereFromOutsideIsDrawnUniformlyInItsCone) {
 }
 
 TEST(SphericalTriangle, HasTheSolidAngleOfAnOctant) {
-  EXPECT_NEAR(SphericalTriangle({2, 0, 0}, {0, 3, 0}, {0, 0, 1}).solid_angle(), kPi / 2, 1e-14);
+  EXPECT_NEAR(SphericalTriangle({2, 0, 0}, {0, 3, 0}, {0, 0, 1}).solid_angle(),
+              std::numbers::pi / 2, 1e-14);
 }
 
 TEST(SphericalTriangle, IsDrawnFromUniformly) {

@@ -8,15 +8,14 @@
 #include <numbers>
 
 #include "freepath/base/error.h"
+#include "tests/render/expect_near.h"
 
 namespace freepath {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+using testing::expect_near;
 
-void expect_near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6F) {
-  EXPECT_LE((a - b).length(), tolerance) << a << " is not " << b;
-}
+constexpr double kRadians = std::numbers::pi / 180;
 
 /// Where a point of the world appears on the film, in pixels, and how deep.
 Vec3d project(const View& view, int width, int height, const Vec3d& point) {

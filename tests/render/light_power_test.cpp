@@ -19,8 +19,6 @@ namespace {
 
 using testing::TestSpectra;
 
-constexpr double kPi = std::numbers::pi;
-
 const TestSpectra& spectra() {
   static const TestSpectra kSpectra;
   return kSpectra;
@@ -49,7 +47,7 @@ double flux_around(const SceneLights& lights, const Vec3f& centre, int size = 15
       sum += luminance_of_channels(draw.radiance, values);
     }
   }
-  return sum * 4 * kPi / (static_cast<double>(size) * size);
+  return sum * 4 * std::numbers::pi / (static_cast<double>(size) * size);
 }
 
 template <class Function>
@@ -149,7 +147,7 @@ TEST(Photometry, PowerOfAnAreaLightIsThatOfEachPart) {
       const double sides = two_sided ? 2 : 1;
       const double luminance =
           luminance_of_channels(lights.emitted(0, point, point.normal, values), values);
-      EXPECT_NEAR(luminance * kPi * mesh->area(part) * sides, 7, 1e-4);
+      EXPECT_NEAR(luminance * std::numbers::pi * mesh->area(part) * sides, 7, 1e-4);
       EXPECT_EQ(is_black(lights.emitted(0, point, -point.normal, values)), !two_sided);
     }
   }
@@ -189,7 +187,7 @@ TEST(Photometry, IlluminanceIsThatOfASurface) {
                luminance_of_channels(lights.escape({0, 0, 0}, d, values).radiance, values);
       }
     }
-    return sum * 4 * kPi / (kSize * kSize);
+    return sum * 4 * std::numbers::pi / (kSize * kSize);
   };
   EXPECT_NEAR(around(ConstantInfiniteLight{.radiance = s.warm, .illuminance = 12.0}, {1, 0, 0}), 12,
               1e-2);

@@ -16,16 +16,13 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/render/sky.h"
+#include "tests/render/expect_near.h"
 #include "tests/statistics.h"
 
 namespace freepath {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-void expect_near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6F) {
-  EXPECT_LE((a - b).length(), tolerance) << a << " is not " << b;
-}
+using testing::expect_near;
 
 Image grey_image(int width, int height, const std::function<float(int, int)>& value) {
   Image image{.width = width, .height = height, .channels = {"Y"}};
@@ -51,9 +48,9 @@ Image rough_image() {
 double integrate(const std::function<double(const Vec3f&)>& f, int columns, int rows) {
   double sum = 0;
   for (int row = 0; row < rows; ++row) {
-    const double top = std::cos(kPi * row / rows);
-    const double bottom = std::cos(kPi * (row + 1) / rows);
-    const double solid_angle = 2 * kPi * (top - bottom) / columns;
+    const double top = std::cos(std::numbers::pi * row / rows);
+    const double bottom = std::cos(std::numbers::pi * (row + 1) / rows);
+    const double solid_angle = 2 * std::numbers::pi * (top - bottom) / columns;
     for (int column = 0; column < columns; ++column) {
       const Vec3f d = lat_long_direction((column + 0.5F) / static_cast<float>(columns),
                                          static_cast<float>(0.5 * (top + bottom)), UpAxis::kY);
@@ -84,9 +81,9 @@ void expect_samples_follow_pdf(const std::string& name, const Lights& lights) {
         const double fine_rows = kRows * kFine;
         const double row =
             std::min(fine_rows - 1, std::floor(lat_long(d, UpAxis::kY).v * fine_rows));
-        const double solid_angle =
-            2 * kPi / (kColumns * kFine) *
-            (std::cos(kPi * row / fine_rows) - std::cos(kPi * (row + 1) / fine_rows));
+        const double solid_angle = 2 * std::numbers::pi / (kColumns * kFine) *
+                                   (std::cos(std::numbers::pi * row / fine_rows) -
+                                    std::cos(std::numbers::pi * (row + 1) / fine_rows));
         if (!in_sun(d)) expected[bin(d)] += kSamples * lights.pdf(d) * solid_angle;
         return 0.0;
       },
@@ -222,7 +219,7 @@ TEST(ImageEnvironment, FollowsTheLatLongConvention) {
   for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
     const LatLong position = lat_long(lat_long_direction(0.3F, std::cos(1.1F), up), up);
     EXPECT_NEAR(position.u, 0.3F, 1e-6);
-    EXPECT_NEAR(position.v, 1.1F / kPi, 1e-6);
+    EXPECT_NEAR(position.v, 1.1F / std::numbers::pi, 1e-6);
   }
 }
 
@@ -232,7 +229,7 @@ TEST(ImageEnvironment, ShowsThePixelThatLiesInADirection) {
     const ImageEnvironment environment(image, up, "numbers");
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 8; ++column) {
-        const auto height = static_cast<float>(std::cos(kPi * (row + 0.5) / 4));
+        const auto height = static_cast<float>(std::cos(std::numbers::pi * (row + 0.5) / 4));
         const Vec3f d = lat_long_direction((column + 0.5F) / 8, height, up);
         EXPECT_NEAR(environment.evaluate(d).radiance.x, 10.0F * row + column, 1e-4);
       }
@@ -283,8 +280,8 @@ TEST(ImageEnvironment, NamesThePixelThatIsNoLight) {
 TEST(Sun, RadianceTimesSolidAngleIsItsIrradiance) {
   const Sun sun({.elevation = 20, .azimuth = 80, .irradiance = Spectrum(3, 2, 1)}, UpAxis::kZ);
   // The solid angle of a cone, in a form that doesn't cancel.
-  const double sine = std::sin(0.5 * 0.2665 * kPi / 180);
-  EXPECT_NEAR(Sun::solid_angle(), 4 * kPi * sine * sine, 1e-6 * Sun::solid_angle());
+  const double sine = std::sin(0.5 * 0.2665 * std::numbers::pi / 180);
+  EXPECT_NEAR(Sun::solid_angle(), 4 * std::numbers::pi * sine * sine, 1e-6 * Sun::solid_angle());
   EXPECT_NEAR(sun.radiance().x * Sun::solid_angle(), 3, 1e-5);
   EXPECT_NEAR(sun.radiance().z * Sun::solid_angle(), 1, 1e-5);
 }
@@ -294,7 +291,7 @@ TEST(Sun, TheDiscThatRaysSeeHasTheSampledSolidAngle) {
   // inside is π r² / side², up to the curvature (2e-5).
   const Sun sun({.elevation = 33, .azimuth = 77}, UpAxis::kY);
   const TangentFrame frame(sun.direction());
-  const double radius = std::tan(0.2665 * kPi / 180);
+  const double radius = std::tan(0.2665 * std::numbers::pi / 180);
   RandomStream random(41, 42, 43, 44);
   constexpr int kSamples = 2'000'000;
   uint64_t inside = 0;
@@ -304,7 +301,7 @@ TEST(Sun, TheDiscThatRaysSeeHasTheSampledSolidAngle) {
     const Vec3f d = frame.to_world(static_cast<float>(x), static_cast<float>(y), 1).normalized();
     inside += sun.contains(d) ? 1 : 0;
   }
-  const double expected = kPi / (2.2 * 2.2);
+  const double expected = std::numbers::pi / (2.2 * 2.2);
   const double error = std::sqrt(expected * (1 - expected) / kSamples);
   EXPECT_TRUE(testing::check_mean("fraction inside", static_cast<double>(inside) / kSamples, error,
                                   kSamples, expected, {.absolute = 5e-5}));
@@ -327,7 +324,7 @@ TEST(Sun, EverySampledDirectionLiesInTheDisc) {
 TEST(Sun, IsDimmerAndRedderWhenItIsLow) {
   const Spectrum high = direct_sun_irradiance(60, 3);
   const Spectrum low = direct_sun_irradiance(5, 3);
-  EXPECT_NEAR(luminance(high), kPi, 0.3 * kPi);  // about 100 klx
+  EXPECT_NEAR(luminance(high), std::numbers::pi, 0.3 * std::numbers::pi);  // about 100 klx
   EXPECT_LT(luminance(low), 0.3F * luminance(high));
   EXPECT_GT(low.x / low.z, 2 * high.x / high.z);
   EXPECT_GT(direct_sun_irradiance(0, 3).x, 0);
@@ -342,9 +339,10 @@ TEST(Sun, RefusesImpossibleParameters) {
 TEST(DaylightSky, HasTheZenithLuminanceOfThePaper) {
   // T = 3, sun 45° high: (7.1649) tan((4/9 - 1/40) π/2) + 1.7727 kcd/m² [Preetham99, A.2].
   const double expected =
-      (7.1649 * std::tan((4.0 / 9 - 1.0 / 40) * kPi / 2) + 1.7727) * kRadiancePerKilocandela;
+      (7.1649 * std::tan((4.0 / 9 - 1.0 / 40) * std::numbers::pi / 2) + 1.7727) *
+      kRadiancePerKilocandela;
   const DaylightSky sky({.elevation = 45});
-  const Spectrum zenith = sky.radiance(1, std::cos(kPi / 4));
+  const Spectrum zenith = sky.radiance(1, std::cos(std::numbers::pi / 4));
   EXPECT_NEAR(luminance(zenith), expected, 1e-3 * expected);
   EXPECT_GT(zenith.z, 1.5F * zenith.x);  // blue
 }

@@ -14,8 +14,6 @@
 
 namespace freepath {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 const Vec3f kWeights(0.2126F, 0.7152F, 0.0722F);
 
 void expect_at(const Vec3f& direction, float u, float v) {
@@ -84,7 +82,7 @@ TEST(OctahedralEnvironment, TheFluenceIsThatOfThePixels) {
   const Image image = testing::rough_image(17, 17).pixels;
   double sum = 0;
   for (std::size_t i = 0; i < image.values.size(); ++i) sum += image.values[i] * kWeights[i % 3];
-  const double expected = 4 * kPi * sum / (17.0 * 17.0);
+  const double expected = 4 * std::numbers::pi * sum / (17.0 * 17.0);
   const OctahedralEnvironment environment(image, kWeights, "rough");
   EXPECT_NEAR(environment.fluence(), expected, 1e-5 * expected);
   RandomStream random(3, 1, 4, 1);

@@ -21,8 +21,6 @@ using testing::check_mean;
 using testing::family_wise_threshold;
 using testing::RunningStatistics;
 
-constexpr double kPi = std::numbers::pi;
-
 struct Case {
   std::string name;
   FilterModel model;
@@ -59,10 +57,12 @@ TEST(PixelFilter, HasTheShapesOfTheSceneLanguage) {
   const auto gaussian = [](double x, double radius, double sigma) {
     const auto bell = [&](double t) { return std::exp(-t * t / (2 * sigma * sigma)); };
     const double integral =
-        sigma * std::sqrt(2 * kPi) * std::erf(radius / (sigma * std::sqrt(2.0)));
+        sigma * std::sqrt(2 * std::numbers::pi) * std::erf(radius / (sigma * std::sqrt(2.0)));
     return (bell(x) - bell(radius)) / (integral - 2 * radius * bell(radius));
   };
-  const auto sinc = [](double x) { return x == 0 ? 1 : std::sin(kPi * x) / (kPi * x); };
+  const auto sinc = [](double x) {
+    return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
+  };
   const PixelFilter box(BoxFilter{1.5, 0.25});
   const PixelFilter bell(GaussianFilter{1.5, 2, 0.6});
   const PixelFilter triangle(TriangleFilter{2, 1});

@@ -12,6 +12,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/scene/pbrt/transform.h"
+#include "tests/render/expect_near.h"
 #include "tests/statistics.h"
 
 namespace freepath {
@@ -19,12 +20,9 @@ namespace {
 
 using testing::check_chi_square;
 using testing::chi_square_test;
+using testing::expect_near;
 
 const Matrix4d kIdentity;
-
-void expect_near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6F) {
-  EXPECT_LE((a - b).length(), tolerance) << a << " is not " << b;
-}
 
 /// Where a ray is at a depth z [camera space = world].
 Vec3d at_depth(const CameraRay& ray, double z) {

@@ -22,8 +22,6 @@ namespace {
 using testing::LightsCase;
 using testing::SeenDelta;
 using testing::TestSpectra;
-
-constexpr double kPi = std::numbers::pi;
 const Vec3f kPosition(0.2F, -0.1F, 0.3F);
 
 const TestSpectra& spectra() {
@@ -51,7 +49,8 @@ std::vector<LightsCase> delta_cases() {
   };
   // Seen within the edge of the cone, halfway up the smooth step.
   cases.push_back({"spot", {}});
-  const double middle = 0.5 * (std::cos(40 * kPi / 180) + std::cos(20 * kPi / 180));
+  const double middle =
+      0.5 * (std::cos(40 * std::numbers::pi / 180) + std::cos(20 * std::numbers::pi / 180));
   const Vec3d aside(std::sqrt(1 - middle * middle), 0, middle);
   cases.back().description.lights = {
       SpotLight{.intensity = s.grey,
@@ -92,7 +91,7 @@ LightDraw draw_with(const SceneLights& lights, const SpectrumValues& values, Ran
 /// Calls f(direction, solid angle) for the midpoints of a grid on the sphere.
 template <class Function>
 void for_directions(int size, const Function& f) {
-  const double solid_angle = 4 * kPi / (static_cast<double>(size) * size);
+  const double solid_angle = 4 * std::numbers::pi / (static_cast<double>(size) * size);
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) {
       f(direction_from_octahedral({(static_cast<float>(column) + 0.5F) / static_cast<float>(size),

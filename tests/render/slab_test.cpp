@@ -83,15 +83,15 @@ TEST(Slab, AHalfSpaceBelowALayerOfItsKindStaysTheSame) {
 /// An independent answer for layers: the vertical place is the optical depth itself, so that a
 /// flight needs neither voxels nor null collisions, directions are their cosines alone, absorption
 /// ends paths, and everything is in double precision.
-struct Reference {
+struct SlabReference {
   RunningStatistics top, bottom;
 };
-Reference trace_reference(const std::vector<SlabLayer>& layers, double mu0, uint64_t paths) {
+SlabReference trace_reference(const std::vector<SlabLayer>& layers, double mu0, uint64_t paths) {
   std::mt19937_64 engine(12345);
   std::uniform_real_distribution<double> uniform;
   double total = 0;
   for (const SlabLayer& layer : layers) total += layer.tau;
-  Reference reference;
+  SlabReference reference;
   for (uint64_t path = 0; path < paths; ++path) {
     double mu = mu0;
     double depth = 0;
@@ -129,7 +129,7 @@ TEST(Slab, LayersOfDifferentKindsAgreeWithAnIndependentCalculation) {
       {{{0.05, 1, 0}, {3, 0.8, 0.9}, {0.2, 0.6, -0.6}}, 1, "weighted-delta:rate-scale=1.5"},
       {{{0.25, 0.5, 0}, {0.25, 0.3, 0}}, 1, "weighted-delta:rate-scale=0.7"}};
   for (const Stack& stack : stacks) {
-    const Reference reference = trace_reference(stack.layers, stack.mu0, 2'000'000);
+    const SlabReference reference = trace_reference(stack.layers, stack.mu0, 2'000'000);
     SlabSettings settings;
     settings.mu0 = stack.mu0;
     settings.paths = 2'000'000;

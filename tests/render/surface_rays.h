@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "freepath/base/random.h"
@@ -71,13 +72,12 @@ inline TriangleMesh cube(double half) {
 
 /// A sphere of triangles around 0: `steps` in the polar angle and twice as many around.
 inline TriangleMesh triangle_sphere(double radius, int steps, bool with_normals) {
-  constexpr double kPi = 3.14159265358979323846;
   TriangleMesh mesh;
   const int around = 2 * steps;
   for (int i = 0; i <= steps; ++i) {
     for (int j = 0; j < around; ++j) {
-      const double theta = kPi * i / steps;
-      const double phi = 2 * kPi * j / around;
+      const double theta = std::numbers::pi * i / steps;
+      const double phi = 2 * std::numbers::pi * j / around;
       const Vec3d n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
                     std::cos(theta));
       mesh.positions.push_back(n * radius);

@@ -10,10 +10,8 @@
 
 namespace freepath::testing {
 
-inline constexpr double kPi = std::numbers::pi;
-
 /// A shape and its parameterisation in the object space, written down from pbrt's documentation.
-struct Reference {
+struct ShapeReference {
   ShapeGeometry geometry;
   Vec3d (*at)(const ShapeGeometry&, double u, double v);
 };
@@ -23,7 +21,7 @@ inline Vec3d at_sphere(const ShapeGeometry& geometry, double u, double v) {
   const double theta_min = std::acos(std::clamp(s.z_min / s.radius, -1.0, 1.0));
   const double theta_max = std::acos(std::clamp(s.z_max / s.radius, -1.0, 1.0));
   const double theta = theta_min + v * (theta_max - theta_min);
-  const double phi = u * s.phi_max * kPi / 180;
+  const double phi = u * s.phi_max * std::numbers::pi / 180;
   return Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) *
          s.radius;
 }
@@ -31,13 +29,13 @@ inline Vec3d at_sphere(const ShapeGeometry& geometry, double u, double v) {
 inline Vec3d at_disk(const ShapeGeometry& geometry, double u, double v) {
   const auto& d = std::get<Disk>(geometry);
   const double r = d.radius + v * (d.inner_radius - d.radius);
-  const double phi = u * d.phi_max * kPi / 180;
+  const double phi = u * d.phi_max * std::numbers::pi / 180;
   return {r * std::cos(phi), r * std::sin(phi), d.height};
 }
 
 inline Vec3d at_cylinder(const ShapeGeometry& geometry, double u, double v) {
   const auto& c = std::get<Cylinder>(geometry);
-  const double phi = u * c.phi_max * kPi / 180;
+  const double phi = u * c.phi_max * std::numbers::pi / 180;
   return {c.radius * std::cos(phi), c.radius * std::sin(phi), c.z_min + v * (c.z_max - c.z_min)};
 }
 
@@ -52,7 +50,7 @@ inline Vec3d at_triangle(const ShapeGeometry& geometry, double u, double v) {
   return p[0] * (1 - u) + p[1] * (u - v) + p[2] * v;
 }
 
-inline std::vector<Reference> references() {
+inline std::vector<ShapeReference> references() {
   TriangleMesh triangle;
   triangle.positions = {{-1, -0.8, 0.1}, {1.2, -0.7, -0.2}, {0.3, 1.1, 0.4}};
   triangle.indices = {0, 1, 2};

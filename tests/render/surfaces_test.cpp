@@ -14,7 +14,7 @@ namespace {
 
 class EveryShape : public ::testing::TestWithParam<std::tuple<int, bool, bool>> {
  protected:
-  Reference reference() const { return references()[std::get<0>(GetParam())]; }
+  ShapeReference reference() const { return references()[std::get<0>(GetParam())]; }
   bool is_mirrored() const { return std::get<1>(GetParam()); }
   bool is_reversed() const { return std::get<2>(GetParam()); }
 };
@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, EveryShape,
 
 TEST_P(EveryShape, IsMetWhereItIsParameterisedWithTheDerivativeAndTheSideOfPbrt) {
   RandomSurfaces random(7 + std::get<0>(GetParam()));
-  const Reference shape = reference();
+  const ShapeReference shape = reference();
   int hits = 0;
   for (int trial = 0; trial < 20; ++trial) {
     const Vec3d origin = random.in_box(100);
@@ -84,7 +84,7 @@ TEST_P(EveryShape, IsMetWhereItIsParameterisedWithTheDerivativeAndTheSideOfPbrt)
 
 TEST_P(EveryShape, IsMetByEveryRayToAPointOfIt) {
   RandomSurfaces random(70 + std::get<0>(GetParam()));
-  const Reference shape = reference();
+  const ShapeReference shape = reference();
   const Matrix4d place = random.transform(2, is_mirrored());
   const Surfaces surfaces = surfaces_of(shape_of(shape.geometry, place));
   for (int ray = 0; ray < 2000; ++ray) {
@@ -111,7 +111,7 @@ TEST_P(EveryShape, IsMetByEveryRayToAPointOfIt) {
 }
 
 TEST_P(EveryShape, IsNotMetAgainByARayThatLeavesIt) {
-  const Reference shape = reference();
+  const ShapeReference shape = reference();
   for (const double scale : {1e-3, 1.0, 1e4}) {
     RandomSurfaces random(700 + std::get<0>(GetParam()));
     Matrix4d size;

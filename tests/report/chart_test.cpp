@@ -15,18 +15,11 @@
 namespace freepath {
 namespace {
 
+using testing::count;
 using testing::xml_fault;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-    ++found;
-  }
-  return found;
-}
 
 /// Numbers that a pattern finds in its only group.
 std::vector<double> numbers(const std::string& text, const std::string& pattern) {

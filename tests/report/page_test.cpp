@@ -10,19 +10,13 @@
 #include "freepath/base/error.h"
 #include "freepath/report/markup.h"
 #include "tests/report/sample_page.h"
+#include "tests/report/well_formed.h"
 
 namespace freepath {
 namespace {
 
+using testing::count;
 using testing::sample_page;
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-    ++found;
-  }
-  return found;
-}
 
 std::string html_of(PageBlock block) {
   Page page{"title", "", {}};

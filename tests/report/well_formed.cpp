@@ -65,4 +65,12 @@ std::string xml_fault(const std::string& text) {
   return open.empty() ? (had_root ? "" : "no element") : "not closed: " + open.back();
 }
 
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
 }  // namespace freepath::testing

@@ -13,6 +13,7 @@
 #include "freepath/scene/build/build_textures.h"
 #include "freepath/spectra/named_spectra.h"
 #include "tests/scene/built_scenes.h"
+#include "tests/scene/expect_near.h"
 
 namespace freepath::testing {
 namespace {
@@ -28,16 +29,12 @@ std::string material_error(const std::string& parameters) {
 /// The only material after the standard one.
 template <class Kind>
 Kind only_material(const std::string& parameters) {
-  const BuiltScene built(with_materials("Material " + parameters));
+  const ParsedScene built(with_materials("Material " + parameters));
   return std::get<Kind>(built.scene().materials.at(1).kind());
 }
 
-void expect_near(const Vec3f& found, const Vec3f& expected, float tolerance = 1e-4F) {
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << "channel " << i;
-}
-
 TEST(BuildMaterials, HasOneMaterialForEachThatIsNoInterface) {
-  const BuiltScene built(with_materials(R"(
+  const ParsedScene built(with_materials(R"(
       Material "interface"
       Material "diffuse" "rgb reflectance" [ .1 .2 .3 ]
       Material ""
@@ -53,7 +50,7 @@ TEST(BuildMaterials, HasOneMaterialForEachThatIsNoInterface) {
 }
 
 TEST(BuildMaterials, DiffuseTakesAnySpectrumAndReflectsHalfByDefault) {
-  const BuiltScene built(with_materials(R"(
+  const ParsedScene built(with_materials(R"(
       Material "diffuse"
       Material "diffuse" "spectrum reflectance" [ 300 .25 900 .25 ]
       Material "diffuse" "blackbody reflectance" 5000)"));
@@ -65,14 +62,14 @@ TEST(BuildMaterials, DiffuseTakesAnySpectrumAndReflectsHalfByDefault) {
 }
 
 TEST(BuildMaterials, ColoursAboveOneAreClippedWithAWarning) {
-  const BuiltScene built(with_materials(R"(Material "diffuse" "rgb reflectance" [ .5 2 1 ])"));
+  const ParsedScene built(with_materials(R"(Material "diffuse" "rgb reflectance" [ .5 2 1 ])"));
   ASSERT_EQ(built.warnings().size(), 1U);
   EXPECT_EQ(built.warnings()[0],
             "scene.pbrt:2:20: 'reflectance' has values above 1, which are clipped to 1");
 }
 
 TEST(BuildMaterials, ConductorsAreSmoothCopperByDefault) {
-  const BuiltScene built(with_materials(R"(
+  const ParsedScene built(with_materials(R"(
       Material "conductor"
       Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k")"));
   EXPECT_TRUE(built.scene().materials[1].is_specular());
@@ -82,7 +79,7 @@ TEST(BuildMaterials, ConductorsAreSmoothCopperByDefault) {
 }
 
 TEST(BuildMaterials, ConductorsTakeAReflectanceInPlaceOfAnIndex) {
-  const BuiltScene built(
+  const ParsedScene built(
       with_materials(R"(Material "conductor" "rgb reflectance" [ .8 .6 .4 ] "float roughness" 0)"));
   expect_near(built.albedo(1), {0.8F, 0.6F, 0.4F}, 1e-3F);
   EXPECT_EQ(material_error(R"("conductor" "rgb reflectance" [ 1 1 1 ] "rgb k" [ 3 3 3 ])"),
@@ -106,7 +103,7 @@ TEST(BuildMaterials, RoughnessesAlongUAndVReplaceTheOneForBoth) {
 }
 
 TEST(BuildMaterials, DielectricsTakeANumberOrASpectrumAsIndex) {
-  const BuiltScene built(with_materials(R"(
+  const ParsedScene built(with_materials(R"(
       Material "dielectric"
       Material "dielectric" "float eta" 1.33
       Material "dielectric" "spectrum eta" "glass-BK7"
@@ -122,7 +119,7 @@ TEST(BuildMaterials, DielectricsTakeANumberOrASpectrumAsIndex) {
 }
 
 TEST(BuildMaterials, CoatedMaterialsHaveTheDefaultsOfPbrt) {
-  const BuiltScene built(with_materials(R"(Material "coateddiffuse" Material "coatedconductor")"));
+  const ParsedScene built(with_materials(R"(Material "coateddiffuse" Material "coatedconductor")"));
   const auto& diffuse = std::get<CoatedDiffuseMaterial>(built.scene().materials[1].kind());
   const auto& conductor = std::get<CoatedConductorMaterial>(built.scene().materials[2].kind());
   for (const Coating* coating : {&diffuse.coating, &conductor.coating}) {
@@ -163,7 +160,7 @@ TEST(BuildMaterials, CoatedMaterialsTakeAllParameters) {
 }
 
 TEST(BuildMaterials, MixesNameMaterialsBeforeAndAfterThem) {
-  const BuiltScene built(with_materials(R"(
+  const ParsedScene built(with_materials(R"(
       MakeNamedMaterial "black" "string type" "diffuse" "rgb reflectance" [ 0 0 0 ]
       MakeNamedMaterial "blend" "string type" "mix" "string materials" [ "black" "white" ]
         "float amount" 1
@@ -254,7 +251,7 @@ TEST(BuildMaterials, WrongTypesAndValuesAreErrorsWithTheirPlace) {
 }
 
 TEST(BuildMaterials, NamesParametersThatDoNothing) {
-  const BuiltScene built(with_materials(R"(
+  const ParsedScene built(with_materials(R"(
 Texture "bumps" "float" "constant"
 Material "diffuse" "rgb reflectanse" [ 0 0 0 ]
 Material "diffuse" "texture displacement" "bumps" "string normalmap" "n.png"
@@ -272,7 +269,7 @@ Material "conductor" "texture displacement" "bumps")"));
 }
 
 TEST(BuildMaterials, ParametersOfAttributesAreThoseOfMaterials) {
-  const BuiltScene built(with_materials(
+  const ParsedScene built(with_materials(
       R"(Attribute "material" "rgb reflectance" [ .25 .25 .25 ] "float roughness" 1
          Material "diffuse")"));
   expect_near(built.albedo(1), Vec3f(0.25F));

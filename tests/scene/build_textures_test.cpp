@@ -9,6 +9,7 @@
 
 #include "freepath/io/image.h"
 #include "tests/scene/built_scenes.h"
+#include "tests/scene/expect_near.h"
 
 namespace freepath::testing {
 namespace {
@@ -16,12 +17,8 @@ namespace {
 /// What an error says of textures that begin in the second line.
 std::string texture_error(const std::string& text) { return build_error("WorldBegin\n" + text); }
 
-void expect_near(const Vec3f& found, const Vec3f& expected, float tolerance = 1e-4F) {
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << "channel " << i;
-}
-
 TEST(BuildTextures, HaveTheDefaultsOfPbrt) {
-  const BuiltScene built(R"(WorldBegin
+  const ParsedScene built(R"(WorldBegin
       Texture "constant" "float" "constant"
       Texture "scale" "float" "scale"
       Texture "mix" "float" "mix"
@@ -44,7 +41,7 @@ TEST(BuildTextures, HaveTheDefaultsOfPbrt) {
 }
 
 TEST(BuildTextures, AreMadeOfTexturesBeforeAndAfterThem) {
-  const BuiltScene built(R"(WorldBegin
+  const ParsedScene built(R"(WorldBegin
       Texture "outer" "spectrum" "mix" "texture tex1" "red" "texture tex2" "inner"
         "texture amount" "half"
       Texture "inner" "spectrum" "scale" "rgb tex" [ .5 .5 .5 ] "texture scale" "half"
@@ -62,7 +59,7 @@ TEST(BuildTextures, AreMadeOfTexturesBeforeAndAfterThem) {
 }
 
 TEST(BuildTextures, OfMetalsAreNoReflectances) {
-  const BuiltScene built(R"(WorldBegin
+  const ParsedScene built(R"(WorldBegin
       Texture "k" "spectrum" "scale" "texture tex" "three" "float scale" 2
       Texture "three" "spectrum" "constant" "rgb value" [ 3 3 3 ]
       Texture "one" "spectrum" "constant" "rgb value" [ 1 1 1 ]
@@ -147,7 +144,7 @@ TEST(BuildTextures, WrongParametersAreErrorsOrWarnings) {
             "scene.pbrt:2:36: a checkerboard of dimension 3 is not supported; use 2");
   EXPECT_EQ(texture_error(R"(Texture "t" "float" "checkerboard" "string mapping" "planar")"),
             "scene.pbrt:2:36: the mapping 'planar' is not supported; use 'uv'");
-  const BuiltScene built(R"(WorldBegin
+  const ParsedScene built(R"(WorldBegin
 Texture "t" "float" "constant" "float valu" 2)");
   ASSERT_EQ(built.warnings().size(), 1U);
   EXPECT_EQ(built.warnings()[0],
@@ -183,13 +180,13 @@ class TwoPixels {
 
 TEST(BuildTextures, ReadImages) {
   const TwoPixels pixels;
-  const BuiltScene built(fmt::format(R"(WorldBegin
+  const ParsedScene built(fmt::format(R"(WorldBegin
       Texture "plain" "spectrum" "imagemap" "string filename" "{0}"
       Texture "mean" "float" "imagemap" "string filename" "{0}" "float scale" 2
       Texture "inverse" "spectrum" "imagemap" "string filename" "{0}" "bool invert" true
         "string wrap" "black" "string encoding" "linear" "float uscale" -1 "float udelta" 1
       Material "diffuse" "texture reflectance" "plain")",
-                                     pixels.path()));
+                                      pixels.path()));
   expect_near(built.albedo(1, 0.25F, 0.5F), {0.25F, 0.5F, 0.75F});
   expect_near(built.albedo(1, 1.75F, 0.5F), {1, 0, 0});
   EXPECT_NEAR(built.float_texture("mean", 0.25F, 0.5F), 1, 1e-6F);
@@ -214,10 +211,10 @@ TEST(BuildTextures, SayWhatIsWrongWithImages) {
   EXPECT_EQ(error_with(R"("string encoding" "log")"),
             "scene.pbrt:2:32: the encoding \"log\" is not known; use \"sRGB\", \"linear\" or "
             "\"gamma 2.2\"");
-  const BuiltScene built(fmt::format(R"(WorldBegin
+  const ParsedScene built(fmt::format(R"(WorldBegin
 Texture "t" "float" "imagemap" "string filter" "EWA" "float maxanisotropy" 16
         "string filename" "{}")",
-                                     pixels.path()));
+                                      pixels.path()));
   ASSERT_EQ(built.warnings().size(), 1U);
   EXPECT_EQ(built.warnings()[0],
             "scene.pbrt:2:32: the filter 'EWA' is not supported; images are looked up bilinearly");

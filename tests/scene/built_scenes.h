@@ -15,16 +15,16 @@
 namespace freepath::testing {
 
 /// The textures and materials of a scene, at a point of a plane that is seen from straight above.
-class BuiltScene {
+class ParsedScene {
  public:
-  explicit BuiltScene(const std::string& text) : pbrt_(parse(text, diagnostics_)) {
+  explicit ParsedScene(const std::string& text) : pbrt_(parse(text, diagnostics_)) {
     scene_.spectra = std::make_unique<SpectrumTable>(rgb_color_space("srgb"));
     build_textures(context_);
     build_materials(context_);
     values_ = scene_.spectra->in_rgb();
   }
-  BuiltScene(const BuiltScene&) = delete;
-  BuiltScene& operator=(const BuiltScene&) = delete;
+  ParsedScene(const ParsedScene&) = delete;
+  ParsedScene& operator=(const ParsedScene&) = delete;
 
   const PathScene& scene() const { return scene_; }
   const BuildContext& context() const { return context_; }
@@ -73,7 +73,7 @@ class BuiltScene {
 /// The message of the error that building ends with; empty if there is none.
 inline std::string build_error(const std::string& text) {
   try {
-    const BuiltScene built(text);
+    const ParsedScene built(text);
   } catch (const Error& error) {
     return error.what();
   }

@@ -24,7 +24,7 @@ struct Kind {
 /// For the names of tests.
 std::ostream& operator<<(std::ostream& stream, const Kind& kind) { return stream << kind.name; }
 
-class Procedural : public testing::TestWithParam<Kind> {};
+class Procedural : public ::testing::TestWithParam<Kind> {};
 
 bool same(const std::vector<Field>& a, const std::vector<Field>& b) {
   return std::ranges::equal(a, b, [](const Field& x, const Field& y) {
@@ -103,9 +103,9 @@ TEST_P(Procedural, ResolutionsOutOfRangeAreRefused) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, Procedural,
-    testing::Values(Kind{"cloud", generate_cloud, 0.2}, Kind{"smoke", generate_smoke, 0.04},
-                    Kind{"fireball", generate_fireball, 0.2}, Kind{"fog", generate_fog, 0.9},
-                    Kind{"noise", generate_noise, 0.4}, Kind{"puffs", generate_puffs, 0.04}),
+    ::testing::Values(Kind{"cloud", generate_cloud, 0.2}, Kind{"smoke", generate_smoke, 0.04},
+                      Kind{"fireball", generate_fireball, 0.2}, Kind{"fog", generate_fog, 0.9},
+                      Kind{"noise", generate_noise, 0.4}, Kind{"puffs", generate_puffs, 0.04}),
     [](const auto& info) { return info.param.name; });
 
 // The same function of place: coarse voxels hold what fine ones do there.

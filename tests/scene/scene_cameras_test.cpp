@@ -11,8 +11,6 @@
 namespace freepath::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A camera that looks along z from the origin, and something of radiance 1.
 std::string seen(const std::string& camera, const std::string& light, int film_size = 16) {
   return "Integrator \"volpath\" \"integer maxdepth\" 1\n" + film(film_size) + camera +
@@ -30,8 +28,8 @@ void expect_share(const std::string& name, const std::string& scene, double shar
 TEST(SceneCamera, PerspectiveShowsADiskAsItsAreaOverThatOfTheScreen) {
   const std::string disk =
       "Translate .2 -.1 0 Shape \"disk\" \"float height\" 4 \"float radius\" 1.2\n";
-  const double edge = 2 * std::tan(50 * kPi / 360);
-  const double area = kPi * 0.3 * 0.3;
+  const double edge = 2 * std::tan(50 * std::numbers::pi / 360);
+  const double area = std::numbers::pi * 0.3 * 0.3;
   expect_share("angle", seen(R"(Camera "perspective" "float fov" 50)", disk), area / (edge * edge));
   // A screen of x from -1 to 1 and y from -1/2 to 1/2 of the angle of view; pixels are stretched.
   expect_share(
@@ -46,8 +44,9 @@ TEST(SceneCamera, PerspectiveShowsADiskAsItsAreaOverThatOfTheScreen) {
 TEST(SceneCamera, OrthographicShowsADiskAsItsAreaOverThatOfTheScreen) {
   const std::string disk =
       "Translate .2 -.1 0 Shape \"disk\" \"float height\" 4 \"float radius\" .7\n";
-  expect_share("screen", seen(R"(Camera "orthographic")", disk), kPi * 0.49 / 4);
-  expect_share("scaled", seen(R"(Scale .5 .5 .5 Camera "orthographic")", disk), kPi * 0.49 / 16);
+  expect_share("screen", seen(R"(Camera "orthographic")", disk), std::numbers::pi * 0.49 / 4);
+  expect_share("scaled", seen(R"(Scale .5 .5 .5 Camera "orthographic")", disk),
+               std::numbers::pi * 0.49 / 16);
 }
 
 // The cone around a sphere.
@@ -60,11 +59,11 @@ TEST(SceneCamera, SphericalOfEqualAreaShowsASphereAsItsSolidAngle) {
 TEST(SceneCamera, EquirectangularShowsASphereAboveAsARangeOfLatitudes) {
   const std::string sphere = "Translate 0 2 0 Shape \"sphere\" \"float radius\" 1\n";
   expect_share("sphere", seen(R"(Camera "spherical" "string mapping" "equirectangular")", sphere),
-               (kPi / 6) / kPi);
+               (std::numbers::pi / 6) / std::numbers::pi);
 }
 
 /// The part of a unit disk where x is above a number in [-1, 1].
-double part_above(double x) { return (std::acos(x) - x * std::sqrt(1 - x * x)) / kPi; }
+double part_above(double x) { return (std::acos(x) - x * std::sqrt(1 - x * x)) / std::numbers::pi; }
 
 /// A light whose edge is at x = 0, half as far away as what is in focus, seen in one direction.
 std::string blurred_edge(const std::string& camera, double x, double focus) {

@@ -17,8 +17,6 @@
 namespace freepath::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Parallel rays along z through the middle of what lies around the origin.
 std::string along_z(const std::string& world, const std::string& settings = kUnlimited) {
   return settings + film() +
@@ -138,7 +136,8 @@ double scattered_once(double sigma_s, double sigma_t, double g, double intensity
     const double distance = std::hypot(x, z);
     // Light travels from the lamp to (0, 0, z), and then to the camera, along -z.
     const double cosine = -z / distance;
-    const double phase = (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+    const double phase =
+        (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
     const double value = std::exp(-sigma_t * (z + 1 + distance)) * phase / (distance * distance);
     sum += value * (i == 0 || i == kSteps ? 1 : (i % 2 == 1 ? 4 : 2));
   }

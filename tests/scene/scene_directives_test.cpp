@@ -26,7 +26,7 @@ Picture picture_of_text(const std::string& text, ColorMode mode, const Files& fi
 }
 
 /// What stands before a camera that looks along z from -4, and lights.
-std::string seen(const std::string& world, const std::string& before = "") {
+std::string stood_before(const std::string& world, const std::string& before = "") {
   return film(12) + "Sampler \"sobol\" \"integer pixelsamples\" 4\n" + before +
          "\nLookAt 0 0 -4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 45\nWorldBegin\n"
          "LightSource \"infinite\" \"rgb L\" [ .3 .3 .3 ]\n"
@@ -68,9 +68,9 @@ void expect_same(const Twins& twins, const std::string& empty, const Files& file
 
 void expect_same_worlds(const std::vector<Twins>& table, const Files& files = {}) {
   for (Twins twins : table) {
-    twins.one = seen(twins.one);
-    twins.other = seen(twins.other);
-    expect_same(twins, seen(""), files);
+    twins.one = stood_before(twins.one);
+    twins.other = stood_before(twins.other);
+    expect_same(twins, stood_before(""), files);
   }
 }
 
@@ -172,7 +172,8 @@ TEST(SceneDirectives, NamesStandForWhatTheyName) {
 TEST(SceneDirectives, BeforeTheWorld) {
   const auto expect = [](const char* name, const std::string& one, const std::string& other,
                          std::size_t warnings = 0) {
-    expect_same({name, seen(kThing, one), seen(kThing, other), warnings}, seen(""));
+    expect_same({name, stood_before(kThing, one), stood_before(kThing, other), warnings},
+                stood_before(""));
   };
   const std::string glow =
       R"(MakeNamedMedium "m" "string type" "homogeneous" "rgb Le" [ 1 2 3 ] MediumInterface )";

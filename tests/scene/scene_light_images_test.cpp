@@ -15,8 +15,6 @@
 namespace freepath::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A file of an image in colours of R, G, B.
 class ImageFile {
  public:
@@ -52,9 +50,9 @@ TEST(SceneLightImage, OfTheSkyIsTurnedWithIt) {
   const auto expect = [&](const char* name, const std::string& turn, double form) {
     expect_irradiance(name, 0, sky(turn), {2 * form, 4 * form, form}, 4096);
   };
-  expect("x is up", "Rotate -90 0 1 0", 3 * kPi);
-  expect("x is down", "Rotate 90 0 1 0", kPi);
-  expect("z is up", "", 2 * kPi);
+  expect("x is up", "Rotate -90 0 1 0", 3 * std::numbers::pi);
+  expect("x is down", "Rotate 90 0 1 0", std::numbers::pi);
+  expect("z is up", "", 2 * std::numbers::pi);
 }
 
 /// Four times the factor of an element below the corner of a parallel rectangle, for half edges of
@@ -91,7 +89,7 @@ TEST(SceneLightImage, GoniometricLightIsItsImageTimesItsIntensity) {
   }
   // Without an image it is a point; power is that over the sphere.
   expect_irradiance("power", 0, "Translate 0 0 2 LightSource \"goniometric\" \"float power\" 40\n",
-                    grey(40 / (4 * kPi) / 4));
+                    grey(40 / (4 * std::numbers::pi) / 4));
 }
 
 // Turned around x to look down, where the image's top is at -y and its left at -x.
@@ -110,7 +108,7 @@ TEST(SceneLightImage, ProjectionShowsItsImageWithinItsAngle) {
                             : std::array<double, 3>{form, 4 * form, 2 * form});
   }
   // The shorter side spans 30 degrees, the longer reaches twice as far from the axis.
-  const double edge = 2 * 2 * std::tan(15 * kPi / 180);
+  const double edge = 2 * 2 * std::tan(15 * std::numbers::pi / 180);
   EXPECT_GT(render_text(plane_at(0.99 * edge, light)).mean[0], 0);
   EXPECT_EQ(render_text(plane_at(1.01 * edge, light)).mean[0], 0);
 }
@@ -141,7 +139,7 @@ TEST(SceneLightImage, AreaLightShinesWithItsImage) {
 }
 
 TEST(SceneLightImage, TwoSidedLightShinesToBothSides) {
-  const double form = kPi * 1.5 * 1.5 / (1.5 * 1.5 + 2 * 2);
+  const double form = std::numbers::pi * 1.5 * 1.5 / (1.5 * 1.5 + 2 * 2);
   for (const std::string side : {"", "ReverseOrientation "}) {
     expect_irradiance("disk " + side, 0,
                       R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] )"

@@ -11,8 +11,6 @@
 namespace freepath::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(SceneIrradiance, OfAPointIsItsIntensityTimesCosineOverSquareOfDistance) {
   const double distance_2 = 0.3 * 0.3 + 2 * 2;
   const double form = 3 * (2 / std::sqrt(distance_2)) / distance_2;
@@ -25,14 +23,14 @@ TEST(SceneIrradiance, OfAPointIsItsIntensityTimesCosineOverSquareOfDistance) {
 TEST(SceneIrradiance, OfAPointOfGivenPowerIsThatOverTheSphere) {
   expect_irradiance("power", 0,
                     "Translate 0 0 2 LightSource \"point\" \"float power\" 40 \"float scale\" 7\n",
-                    grey(7 * 40 / (4 * kPi) / 4));
+                    grey(7 * 40 / (4 * std::numbers::pi) / 4));
 }
 
 TEST(SceneIrradiance, OfASpotEndsSmoothlyAtItsCone) {
   const auto form = [](double x) {
     const double cosine = 2 / std::sqrt(x * x + 4);
-    const double end = std::cos(30 * kPi / 180);
-    const double start = std::cos(20 * kPi / 180);
+    const double end = std::cos(30 * std::numbers::pi / 180);
+    const double start = std::cos(20 * std::numbers::pi / 180);
     const double u = std::clamp((cosine - end) / (start - end), 0.0, 1.0);
     return u * u * (3 - 2 * u) * cosine * cosine * cosine / 4;
   };
@@ -54,7 +52,7 @@ TEST(SceneIrradiance, OfParallelLightIsItsRadianceTimesCosine) {
 
 TEST(SceneIrradiance, OfASkyOfOneRadianceIsPiTimesThat) {
   expect_irradiance("sky", 0, "LightSource \"infinite\" \"rgb L\" [ 2 1 .5 ]\n",
-                    {2 * kPi, kPi, 0.5 * kPi}, 4096);
+                    {2 * std::numbers::pi, std::numbers::pi, 0.5 * std::numbers::pi}, 4096);
   expect_irradiance("illuminance", 0, "LightSource \"infinite\" \"float illuminance\" 4\n", grey(4),
                     4096);
 }
@@ -65,11 +63,12 @@ TEST(SceneIrradiance, OfADiskAboveItsCentre) {
     return R"(AttributeBegin AreaLightSource "diffuse" )" + light +
            " ReverseOrientation Translate 0 0 2 Shape \"disk\" \"float radius\" 1.5 AttributeEnd\n";
   };
-  const double form = kPi * 1.5 * 1.5 / (1.5 * 1.5 + 2 * 2);
+  const double form = std::numbers::pi * 1.5 * 1.5 / (1.5 * 1.5 + 2 * 2);
   expect_irradiance("disk", 0, disk(R"("rgb L" [ 1 2 3 ])"), {form, 2 * form, 3 * form}, 2048);
   // Power is radiance times pi times area.
-  const double area = kPi * 1.5 * 1.5;
-  expect_irradiance("power", 0, disk(R"("float power" 30)"), grey(30 / (kPi * area) * form), 2048);
+  const double area = std::numbers::pi * 1.5 * 1.5;
+  expect_irradiance("power", 0, disk(R"("float power" 30)"),
+                    grey(30 / (std::numbers::pi * area) * form), 2048);
 }
 
 TEST(SceneIrradiance, OfADiskThatShinesAwayIsNothing) {
@@ -82,7 +81,7 @@ TEST(SceneIrradiance, OfADiskThatShinesAwayIsNothing) {
 TEST(SceneIrradiance, OfASphereIsAsIfItWereAtItsCentre) {
   // pi L (R / D)² cos.
   const double distance_2 = 1.5 * 1.5 + 4;
-  const double form = kPi * 0.49 / distance_2 * 2 / std::sqrt(distance_2);
+  const double form = std::numbers::pi * 0.49 / distance_2 * 2 / std::sqrt(distance_2);
   expect_irradiance("sphere", 1.5,
                     R"(AttributeBegin AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] )"
                     R"("float scale" 2 Translate 0 0 2 Shape "sphere" "float radius" 0.7 )"

@@ -15,10 +15,8 @@
 
 namespace freepath::testing {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 /// Between the ray of the camera and the normal.
-constexpr double kAngle = 55 * kPi / 180;
+constexpr double kAngle = 55 * std::numbers::pi / 180;
 
 std::array<double, 3> grey(double value) { return {value, value, value}; }
 
@@ -73,7 +71,7 @@ TEST(SceneMaterial, DiffuseReflectsItsPartOfTheSky) {
       render_text(plane_of(material, kSky), {.mode = ColorMode::kSpectral, .samples = 1024}),
       {0.8, 0.5, 0.2}, {.absolute = 2e-4, .largest_relative_error = 0.0025});
   expect_radiance("sun", plane_of(R"(Material "diffuse" "rgb reflectance" [ .4 .4 .4 ])", kSun),
-                  0.4 / kPi * kToSun.z);
+                  0.4 / std::numbers::pi * kToSun.z);
 }
 
 TEST(SceneMaterial, SmoothConductorReflectsByFresnel) {
@@ -107,7 +105,7 @@ double facets(double alpha_x, double alpha_y, std::complex<double> eta) {
   const Vec3d half = (kToSun + kToCamera).normalized();
   const auto squared = [](double x) { return x * x; };
   const double slope = squared(half.x / alpha_x) + squared(half.y / alpha_y) + squared(half.z);
-  const double density = 1 / (kPi * alpha_x * alpha_y * slope * slope);
+  const double density = 1 / (std::numbers::pi * alpha_x * alpha_y * slope * slope);
   const auto lambda = [&](const Vec3d& w) {
     const double a2 = (squared(alpha_x * w.x) + squared(alpha_y * w.y)) / squared(w.z);
     return (std::sqrt(1 + a2) - 1) / 2;

@@ -33,22 +33,22 @@ TEST(SceneTwins, UniformGridOfOneValueIsHomogeneous) {
 
 /// Voxels of a box of 6 x 5 x 7 cubes of side 0.4 around the origin, of which the outer ones are
 /// empty.
-const Vec3i kCounts(6, 5, 7);
-const Vec3d kLow(-1.2, -1, -1.4);
-constexpr double kEdge = 0.4;
+const Vec3i kTwinCounts(6, 5, 7);
+const Vec3d kTwinLow(-1.2, -1, -1.4);
+constexpr double kTwinEdge = 0.4;
 
 float lump(const Vec3i& voxel) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (voxel[axis] == 0 || voxel[axis] == kCounts[axis] - 1) return 0;
+    if (voxel[axis] == 0 || voxel[axis] == kTwinCounts[axis] - 1) return 0;
   }
   return static_cast<float>((voxel.x * 5 + voxel.y * 3 + voxel.z * 7) % 4);
 }
 
 template <class Visit>
 void for_each_voxel(const Visit& visit) {
-  for (int z = 0; z < kCounts.z; ++z) {
-    for (int y = 0; y < kCounts.y; ++y) {
-      for (int x = 0; x < kCounts.x; ++x) visit(Vec3i(x, y, z));
+  for (int z = 0; z < kTwinCounts.z; ++z) {
+    for (int y = 0; y < kTwinCounts.y; ++y) {
+      for (int x = 0; x < kTwinCounts.x; ++x) visit(Vec3i(x, y, z));
     }
   }
 }
@@ -66,12 +66,12 @@ std::string lumpy_grid() {
 const std::string kFarBox = medium_box("m", Vec3d(-1.5, -1.5, -1.7), Vec3d(1.5, 1.5, 1.7));
 
 TEST(SceneTwins, UniformGridIsTheVolumeOfAFile) {
-  BrickMapBuilder builder(Vec3i(0), kCounts - Vec3i(1), 0);
+  BrickMapBuilder builder(Vec3i(0), kTwinCounts - Vec3i(1), 0);
   for_each_voxel([&](const Vec3i& voxel) { builder.set_voxel(voxel, lump(voxel)); });
   Field field{"density", std::move(builder).finish(), Matrix4d()};
-  field.index_to_world.setScale(Vec3d(kEdge));
+  field.index_to_world.setScale(Vec3d(kTwinEdge));
   for (int axis = 0; axis < 3; ++axis) {
-    field.index_to_world[3][axis] = kLow[axis] + 0.5 * kEdge;
+    field.index_to_world[3][axis] = kTwinLow[axis] + 0.5 * kTwinEdge;
   }
   const TemporaryFile file("lumps.vdb");
   const Field* const fields[] = {&field};
@@ -83,7 +83,7 @@ TEST(SceneTwins, UniformGridIsTheVolumeOfAFile) {
 
 // Where the boundary passes through voxels it stays, even if these are empty.
 TEST(SceneTwins, BoundaryThatNeedNotBeTracedIsAsOneThatIs) {
-  const std::string tight = medium_box("m", kLow + Vec3d(0.05), -kLow - Vec3d(0.05));
+  const std::string tight = medium_box("m", kTwinLow + Vec3d(0.05), -kTwinLow - Vec3d(0.05));
   const std::string sphere =
       R"(AttributeBegin Translate 0.2 0.9 -2.1 Material "diffuse" Shape "sphere" "float )"
       "radius\" 0.3 AttributeEnd\n";

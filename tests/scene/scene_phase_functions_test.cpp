@@ -14,8 +14,6 @@
 
 namespace freepath::testing {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 constexpr double kSigmaS = 4.5;
 constexpr double kSigmaT = 5;
 constexpr double kHalfWidth = 0.004;
@@ -25,7 +23,7 @@ constexpr double kIrradiance = 40;
 using Phase = std::function<double(double cosine)>;
 
 double henyey_greenstein(double g, double cosine) {
-  return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+  return (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
 /// [Draine03], as its author writes it.
@@ -86,7 +84,7 @@ void expect_phase(const std::string& words, const Phase& phase) {
 }
 
 TEST(ScenePhaseFunction, Isotropic) {
-  const auto phase = [](double) { return 1 / (4 * kPi); };
+  const auto phase = [](double) { return 1 / (4 * std::numbers::pi); };
   expect_phase("", phase);
   expect_phase(R"("string phase" "isotropic")", phase);
 }
@@ -99,7 +97,7 @@ TEST(ScenePhaseFunction, HenyeyGreenstein) {
 
 TEST(ScenePhaseFunction, Rayleigh) {
   expect_phase(R"("string phase" "rayleigh")",
-               [](double c) { return 3 * (1 + c * c) / (16 * kPi); });
+               [](double c) { return 3 * (1 + c * c) / (16 * std::numbers::pi); });
 }
 
 TEST(ScenePhaseFunction, Draine) {
@@ -114,7 +112,7 @@ TEST(ScenePhaseFunction, DropletsOfFog) {
 
 TEST(ScenePhaseFunction, Mixture) {
   expect_phase(R"("string phase" "0.7*henyey-greenstein:g=0.8+0.3*rayleigh")", [](double c) {
-    return 0.7 * henyey_greenstein(0.8, c) + 0.3 * 3 * (1 + c * c) / (16 * kPi);
+    return 0.7 * henyey_greenstein(0.8, c) + 0.3 * 3 * (1 + c * c) / (16 * std::numbers::pi);
   });
 }
 
@@ -124,12 +122,13 @@ TEST(ScenePhaseFunction, Table) {
   const TemporaryFile table("phase.txt");
   std::ofstream(table.path()) << "0 5\n90 1\n180 2\n";
   expect_phase(R"("string phase" "tabulated:)" + table.path().string() + "\"",
-               [](double c) { return (c < 0 ? 1 - c : 1 + 4 * c) / (2 * kPi * 4.5); });
+               [](double c) { return (c < 0 ? 1 - c : 1 + 4 * c) / (2 * std::numbers::pi * 4.5); });
 }
 
 // An error of one percent in the phase function must fail these tests.
 TEST(ScenePhaseFunction, AnErrorOfOnePercentIsNoticed) {
-  const double expected = 1.01 * scattered_once([](double) { return 1 / (4 * kPi); }, 0.6);
+  const double expected =
+      1.01 * scattered_once([](double) { return 1 / (4 * std::numbers::pi); }, 0.6);
   const Picture picture = render_text(lit_column("", 0.6), {.samples = 512});
   EXPECT_LT(z_score(picture.mean[1], picture.error[1], expected), -4);
 }

@@ -11,8 +11,6 @@
 namespace freepath::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Parallel rays over a square of edge 2.
 /// @param side what is looked along: x, y or z
 std::string seen_along(char side, const std::string& shape, const std::string& light) {
@@ -35,7 +33,7 @@ void expect_area(char side, const std::string& shape, double area) {
 
 /// @param area of the surface, of which the power is the radiance times 2 pi (both sides)
 void expect_radiance_of_power(char side, const std::string& shape, double silhouette, double area) {
-  const double mean = 10 / (2 * kPi * area) * silhouette / 4;
+  const double mean = 10 / (2 * std::numbers::pi * area) * silhouette / 4;
   expect_mean("power of " + shape,
               render_text(seen_along(side, shape, "\"float power\" 10"), {.samples = 1024}),
               {mean, mean, mean}, {.absolute = 1e-4 * mean, .largest_relative_error = 0.0035});
@@ -44,7 +42,7 @@ void expect_radiance_of_power(char side, const std::string& shape, double silhou
 TEST(SceneQuadric, PartsOfADisk) {
   const std::string disk =
       R"("disk" "float radius" .9 "float innerradius" .4 "float phimax" 270 "float height" .3)";
-  const double area = kPi * (0.81 - 0.16) * 0.75;
+  const double area = std::numbers::pi * (0.81 - 0.16) * 0.75;
   expect_area('z', disk, area);
   expect_radiance_of_power('z', disk, area, area);
 }
@@ -56,18 +54,19 @@ TEST(SceneQuadric, PartsOfACylinder) {
   expect_area('y', cylinder, 0.8 * 0.9);
   expect_area('x', cylinder, 0.8 * 0.9);
   expect_area('y', R"("cylinder" "float radius" .8 "float zmin" -.2 "float zmax" .7)", 1.6 * 0.9);
-  expect_radiance_of_power('y', cylinder, 0.8 * 0.9, 0.5 * kPi * 0.8 * 0.9);
+  expect_radiance_of_power('y', cylinder, 0.8 * 0.9, 0.5 * std::numbers::pi * 0.8 * 0.9);
 }
 
 TEST(SceneQuadric, PartsOfASphere) {
   // Seen along z: the ring between the radii at z = 0.2 and z = 0.7.
   const std::string zone = R"("sphere" "float radius" .9 "float zmin" .2 "float zmax" .7)";
-  expect_area('z', zone, kPi * (0.49 - 0.04));
+  expect_area('z', zone, std::numbers::pi * (0.49 - 0.04));
   const std::string half = R"("sphere" "float radius" .9 "float phimax" 180)";
-  expect_area('z', half, kPi * 0.81 / 2);
-  expect_area('y', half, kPi * 0.81);
-  expect_area('x', half, kPi * 0.81 / 2);
-  expect_radiance_of_power('z', zone, kPi * (0.49 - 0.04), 2 * kPi * 0.9 * 0.5);
+  expect_area('z', half, std::numbers::pi * 0.81 / 2);
+  expect_area('y', half, std::numbers::pi * 0.81);
+  expect_area('x', half, std::numbers::pi * 0.81 / 2);
+  expect_radiance_of_power('z', zone, std::numbers::pi * (0.49 - 0.04),
+                           2 * std::numbers::pi * 0.9 * 0.5);
 }
 
 /// A surface of parameters from 0 to 1 as triangles.
@@ -92,7 +91,7 @@ std::string mesh_of(const Place& place, int columns, int rows) {
 // 256 edges around cut off 2e-4 of the radius at most.
 TEST(SceneQuadric, CutOnesAreNearlyMeshes) {
   const auto around = [](double u, double turns, double radius, double z) {
-    const double phi = 2 * kPi * turns * u;
+    const double phi = 2 * std::numbers::pi * turns * u;
     return Vec3d(radius * std::cos(phi), radius * std::sin(phi), z);
   };
   const auto expect_same = [&](const std::string& quadric, const std::string& mesh) {

@@ -12,8 +12,6 @@
 namespace freepath::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// A profile of a filter, on any scale; 0 beyond the radius.
 using Profile = std::function<double(double x)>;
 
@@ -23,7 +21,9 @@ struct FilterCase {
   Profile profile;
 };
 
-double sinc(double x) { return x == 0 ? 1 : std::sin(kPi * x) / (kPi * x); }
+double sinc(double x) {
+  return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
+}
 
 double gaussian(double x, double sigma) { return std::exp(-x * x / (2 * sigma * sigma)); }
 

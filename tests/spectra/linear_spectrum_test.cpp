@@ -13,7 +13,7 @@ namespace freepath {
 namespace {
 
 /// The message of the error that reading this text gives.
-std::string error_of(std::string_view text) {
+std::string parse_error(std::string_view text) {
   try {
     read_linear_spectrum(text, "lamp.spd");
   } catch (const Error& error) {
@@ -69,13 +69,13 @@ TEST(LinearSpectrum, IsReadFromText) {
 }
 
 TEST(LinearSpectrum, NamesTheLineOfWhatItCannotRead) {
-  EXPECT_EQ(error_of("400 1\n500 x1"), "lamp.spd:2: 'x1' is not a finite number");
-  EXPECT_EQ(error_of("400 nan"), "lamp.spd:1: 'nan' is not a finite number");
-  EXPECT_EQ(error_of("400 1e999"), "lamp.spd:1: '1e999' is not a finite number");
-  EXPECT_EQ(error_of("400 1\n500"), "lamp.spd:2: the wavelength 500 nm has no value");
-  EXPECT_EQ(error_of("400 1\n400 2"),
+  EXPECT_EQ(parse_error("400 1\n500 x1"), "lamp.spd:2: 'x1' is not a finite number");
+  EXPECT_EQ(parse_error("400 nan"), "lamp.spd:1: 'nan' is not a finite number");
+  EXPECT_EQ(parse_error("400 1e999"), "lamp.spd:1: '1e999' is not a finite number");
+  EXPECT_EQ(parse_error("400 1\n500"), "lamp.spd:2: the wavelength 500 nm has no value");
+  EXPECT_EQ(parse_error("400 1\n400 2"),
             "lamp.spd:2: wavelengths have to increase, but 400 nm follows 400 nm");
-  EXPECT_EQ(error_of("# nothing"),
+  EXPECT_EQ(parse_error("# nothing"),
             "lamp.spd: there is no sample; write pairs of a wavelength in nm and a value");
 }
 

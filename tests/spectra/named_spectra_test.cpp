@@ -13,7 +13,7 @@
 namespace freepath {
 namespace {
 
-std::string error_of(std::string_view name) {
+std::string name_error(std::string_view name) {
   try {
     named_spectrum(name);
   } catch (const Error& error) {
@@ -81,11 +81,11 @@ TEST(NamedSpectra, MetalsReflectAsMeasured) {
 }
 
 TEST(NamedSpectra, UnknownNameIsAnErrorWithTheNearest) {
-  EXPECT_EQ(error_of("metal-Au-n"),
+  EXPECT_EQ(name_error("metal-Au-n"),
             "there is no spectrum 'metal-Au-n'; did you mean 'metal-Au-k'?");
-  EXPECT_EQ(error_of("stdillum-d65"),
+  EXPECT_EQ(name_error("stdillum-d65"),
             "there is no spectrum 'stdillum-d65'; did you mean 'stdillum-D65'?");
-  EXPECT_EQ(error_of("unobtainium"), "there is no spectrum 'unobtainium'");
+  EXPECT_EQ(name_error("unobtainium"), "there is no spectrum 'unobtainium'");
 }
 
 }  // namespace

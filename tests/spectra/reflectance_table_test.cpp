@@ -12,9 +12,12 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/spectra/light_table.h"
+#include "tests/spectra/largest_difference.h"
 
 namespace freepath {
 namespace {
+
+using testing::largest_difference;
 
 const RgbColorSpace& srgb() { return rgb_color_space("srgb"); }
 
@@ -39,10 +42,6 @@ Vec3d integrated(const Reflectance& reflectance, const RgbColorSpace& space) {
            (0.1 / kLuminousIntegral * space.illuminant()(lambda) * reflectance(lambda));
   }
   return space.from_xyz(xyz);
-}
-
-double largest_difference(const Vec3d& a, const Vec3d& b) {
-  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
 std::vector<Vec3d> random_colours(int count, double least, double most) {

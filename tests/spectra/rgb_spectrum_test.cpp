@@ -9,20 +9,19 @@
 
 #include "freepath/base/error.h"
 #include "freepath/spectra/cie_observer.h"
+#include "tests/spectra/largest_difference.h"
 
 namespace freepath {
 namespace {
 
+using testing::largest_difference;
+
 /// RGB that the observer sees of a surface of this reflectance under the illuminant of the space,
 /// by the quadrature at every nanometre.
 template <class Reflectance>
-Vec3d seen(const Reflectance& reflectance, const RgbColorSpace& space) {
+Vec3d observed(const Reflectance& reflectance, const RgbColorSpace& space) {
   return space.from_xyz(observe(
       [&](double wavelength) { return reflectance(wavelength) * space.illuminant()(wavelength); }));
-}
-
-double largest_difference(const Vec3d& a, const Vec3d& b) {
-  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
 /// The colours r, g, b = 0, 0.1, ..., 1.
@@ -39,7 +38,7 @@ std::vector<Vec3d> color_grid() {
 TEST(FitReflectance, ReturnsEveryColourOfSrgb) {
   const RgbColorSpace& space = rgb_color_space("srgb");
   for (const Vec3d& rgb : color_grid()) {
-    const Vec3d found = seen(fit_reflectance(rgb, space), space);
+    const Vec3d found = observed(fit_reflectance(rgb, space), space);
     EXPECT_LT(largest_difference(found, rgb), 0.0002) << rgb;
   }
 }
@@ -49,7 +48,7 @@ TEST(FitReflectance, ReturnsDarkColoursWithTheSameRelativePrecision) {
   for (const double size : {0.1, 0.01, 0.001}) {
     for (const Vec3d& direction : color_grid()) {
       const Vec3d rgb = direction * size;
-      const Vec3d found = seen(fit_reflectance(rgb, space), space);
+      const Vec3d found = observed(fit_reflectance(rgb, space), space);
       EXPECT_LT(largest_difference(found, rgb), 0.005 * size) << rgb;
     }
   }
@@ -63,7 +62,7 @@ TEST(FitReflectance, ReturnsTheColoursOfSrgbInEverySpace) {
     for (const Vec3d& color : color_grid()) {
       Vec3d rgb = space.from_xyz(srgb.to_xyz(color)) / white;
       for (int i = 0; i < 3; ++i) rgb[i] = std::clamp(rgb[i], 0.0, 1.0);
-      const Vec3d found = seen(fit_reflectance(rgb, space), space);
+      const Vec3d found = observed(fit_reflectance(rgb, space), space);
       EXPECT_LT(largest_difference(found, rgb), 0.005) << name << ' ' << rgb;
     }
   }
@@ -76,7 +75,7 @@ TEST(RgbReflectance, OfGreyIsExactlyConstant) {
     for (double wavelength = 360; wavelength <= 830; wavelength += 47) {
       EXPECT_NEAR(spectrum(wavelength), grey, 1e-15);
     }
-    EXPECT_LT(largest_difference(seen(spectrum, space), Vec3d(grey)), 1e-12);
+    EXPECT_LT(largest_difference(observed(spectrum, space), Vec3d(grey)), 1e-12);
   }
 }
 
@@ -99,7 +98,7 @@ TEST(RgbUnbounded, ReturnsColoursOfAnySize) {
          {Vec3d(1, 1, 1), Vec3d(1, 0.5, 0.2), Vec3d(0, 1, 0.3), Vec3d(0.1, 0, 1), Vec3d(1, 1, 0)}) {
       const Vec3d rgb = direction * size;
       const RgbSpectrum spectrum = RgbSpectrum::unbounded(rgb, space);
-      EXPECT_LT(largest_difference(seen(spectrum, space), rgb), 0.002 * size) << rgb;
+      EXPECT_LT(largest_difference(observed(spectrum, space), rgb), 0.002 * size) << rgb;
     }
   }
   EXPECT_EQ(RgbSpectrum::unbounded(Vec3d(0), space)(500), 0);

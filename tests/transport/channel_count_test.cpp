@@ -16,9 +16,9 @@
 namespace freepath::testing {
 namespace {
 
-constexpr std::size_t kRays = 60'000;
+constexpr std::size_t kNoiseRays = 60'000;
 /// Above it one of some 400 comparisons is by chance with a probability of 1e-3.
-constexpr double kThreshold = 4.7;
+constexpr double kChannelThreshold = 4.7;
 
 const Medium& noise_medium() {
   static const Medium kMedium({{.density = make_field(Vec3i(-12), Vec3i(11), [](const Vec3i& p) {
@@ -27,7 +27,7 @@ const Medium& noise_medium() {
   return kMedium;
 }
 
-RayStream rays_through_noise(std::size_t count = kRays) {
+RayStream rays_through_noise(std::size_t count = kNoiseRays) {
   return repeat_ray(Vec3f(-20, 0.3F, 0.2F), Vec3f(1, 0, 0), 60, count);
 }
 
@@ -60,8 +60,8 @@ void expect_transmittance(const std::string& name, const FlightStream& flights,
     }
     const ComponentChannels& sigma = values.components[0];
     const double expected = std::exp(-depth() * (double{sigma.sigma_a[c]} + sigma.sigma_s[c]));
-    EXPECT_TRUE(
-        check_mean(name + ", channel " + std::to_string(c), escaped, expected, {.z = kThreshold}));
+    EXPECT_TRUE(check_mean(name + ", channel " + std::to_string(c), escaped, expected,
+                           {.z = kChannelThreshold}));
   }
 }
 

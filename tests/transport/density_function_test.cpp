@@ -16,8 +16,7 @@
 namespace freepath::testing {
 namespace {
 
-constexpr std::size_t kRays = 200'000;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kFunctionRays = 200'000;
 
 /// 0.5 + 0.5 sin²(pi x) in [0,2] × [-1,1]²: along x its integral over [0,2] is 1.5.
 DensityFunction wave() {
@@ -51,7 +50,8 @@ Medium wave_medium(const Spectrum& sigma_a, const Spectrum& sigma_s) {
 }
 
 RayStream rays_through(std::size_t count) {
-  return repeat_ray(Vec3f(-1, 0.3F, 0.2F), Vec3f(1, 0, 0), kInfinity, count);
+  return repeat_ray(Vec3f(-1, 0.3F, 0.2F), Vec3f(1, 0, 0), std::numeric_limits<float>::infinity(),
+                    count);
 }
 
 /// Methods that go from voxel to voxel refuse computed densities. @return whether this one has to
@@ -81,11 +81,11 @@ TEST(DensityFunction, EveryTrackerEscapesAsOftenAsItsIntegralSays) {
       const Walker walker(medium, settings, shared ? Walker::kAllChannels : turn);
       FlightStream flights;
       WalkStatistics statistics;
-      walker.free_paths(rays_through(kRays), flights, statistics);
+      walker.free_paths(rays_through(kFunctionRays), flights, statistics);
       EXPECT_EQ(statistics.bound_violations, 0U) << info.name;
       for (int slot = 0; slot < walker.channels(); ++slot) {
         RunningStatistics escaped;
-        for (std::size_t i = 0; i < kRays; ++i) {
+        for (std::size_t i = 0; i < kFunctionRays; ++i) {
           escaped.add(flights.event[i] == Event::kEscape ? flights.weight[slot][i] : 0.0);
         }
         const int channel = shared ? slot : turn;
@@ -103,9 +103,10 @@ TEST(DensityFunction, EveryEstimatorFindsItsTransmittance) {
     settings.transmittance = info.name;
     settings.interpolation = Interpolation::kNearest;
     if (refuses(medium, settings, info.name)) continue;
-    const FlightStream flights = estimate_transmittance(medium, rays_through(kRays), settings);
+    const FlightStream flights =
+        estimate_transmittance(medium, rays_through(kFunctionRays), settings);
     RunningStatistics transmittance;
-    for (std::size_t i = 0; i < kRays; ++i) transmittance.add(flights.weight[0][i]);
+    for (std::size_t i = 0; i < kFunctionRays; ++i) transmittance.add(flights.weight[0][i]);
     EXPECT_TRUE(check_mean(std::string(info.name), transmittance, std::exp(-1.5), {}));
   }
 }
@@ -122,7 +123,8 @@ TEST(DensityFunction, AutoChoosesATrackerAndSamplesWithIt) {
 }
 
 TEST(DensityFunction, ValuesThatAreNoDensitiesAreErrorsThatNameThePlace) {
-  for (const float value : {-1.0F, kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
+  for (const float value :
+       {-1.0F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     DensityFunction function = wave();
     function.evaluate = [value](std::span<const Vec3f> /*positions*/, std::span<float> densities) {
       std::fill(densities.begin(), densities.end(), value);

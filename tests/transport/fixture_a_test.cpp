@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBatch = 100'000;
 
-struct Case {
+struct FixtureCase {
   std::string tracker;
   Absorption absorption;
   EmissionTally emission;
@@ -27,7 +27,7 @@ const Medium& fixture() {
   return kMedium;
 }
 
-WalkSettings settings_for(const Case& test, Simd simd) {
+WalkSettings settings_for(const FixtureCase& test, Simd simd) {
   WalkSettings settings;
   settings.tracker = test.tracker;
   settings.interpolation = Interpolation::kNearest;
@@ -48,7 +48,7 @@ double radiance(const FlightStream& flights, std::size_t i, int channel, int slo
 }
 
 /// Enough paths for a standard error of 0.2 %: weights of both signs, or large ones, need more.
-std::size_t paths_for(const Case& test) {
+std::size_t paths_for(const FixtureCase& test) {
   const auto has = [&](const char* text) { return test.tracker.find(text) != std::string::npos; };
   if (has("=max") || has("=average")) return 3'000'000;
   if (test.tracker == "regular" || has("ray-marching")) return 60'000;  // slow, with tame weights
@@ -115,8 +115,8 @@ std::vector<std::string> tracker_variants() {
   return variants;
 }
 
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
+std::vector<FixtureCase> all_cases() {
+  std::vector<FixtureCase> cases;
   for (const std::string& tracker : tracker_variants()) {
     for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
       for (const EmissionTally emission : {EmissionTally::kCollision, EmissionTally::kAnalog}) {
@@ -127,7 +127,7 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-std::string name_of(const Case& test) {
+std::string title_of(const FixtureCase& test) {
   return test.tracker +
          (test.absorption == Absorption::kAnalog ? ", analog absorption"
                                                  : ", weighted absorption") +
@@ -138,11 +138,11 @@ class FixtureATracker : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(FixtureATracker, ReproducesTheRadiance) {
   const double threshold = family_wise_threshold(1e-3, all_cases().size() * 3);
-  for (const Case& test : all_cases()) {
+  for (const FixtureCase& test : all_cases()) {
     if (test.tracker != GetParam()) continue;
     // Exact methods tally emission at real collisions in either mode, and are slow.
     if (test.tracker == "regular" && test.emission == EmissionTally::kAnalog) continue;
-    const std::string name = name_of(test);
+    const std::string name = title_of(test);
     const FixtureResult result =
         estimate_radiance(fixture(), settings_for(test, Simd::kBest), paths_for(test));
     for (int channel = 0; channel < kChannels; ++channel) {
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(All, FixtureATracker, ::testing::ValuesIn(tracker_varia
 TEST(FixtureA, EveryTargetAgrees) {
   for (const char* tracker : {"weighted-delta:rate-scale=0.7", "spectral-decomposition",
                               "hero-wavelength", "weighted-decomposition:control=1.3"}) {
-    const Case test{tracker, Absorption::kWeighted, EmissionTally::kCollision};
+    const FixtureCase test{tracker, Absorption::kWeighted, EmissionTally::kCollision};
     for (const Simd simd : available_simd()) {
       const FixtureResult result = estimate_radiance(fixture(), settings_for(test, simd), 200'000);
       EXPECT_TRUE(check_mean(std::string(tracker) + std::string(to_string(simd)),
@@ -181,7 +181,7 @@ TEST(FixtureA, EveryTargetAgrees) {
 // those of `max` grow by every event that suits a channel better than the others.
 TEST(FixtureA, HistoryKeepsWeightsBounded) {
   const auto largest_weight = [](const char* tracker) {
-    const Case test{tracker, Absorption::kAnalog, EmissionTally::kCollision};
+    const FixtureCase test{tracker, Absorption::kAnalog, EmissionTally::kCollision};
     return estimate_radiance(fixture(), settings_for(test, Simd::kBest), 3'000'000)
         .walk.largest_weight;
   };

@@ -73,8 +73,9 @@ const std::array<RayIntegrals, kChannels>& exact(int ray, Interpolation interpol
   return found->second;
 }
 
-const double kThreshold = family_wise_threshold(1e-3, 600);  // of all comparisons in this file
-constexpr double kQuadrature = 1e-5;                         // what quadrature may be off
+const double kOverlapThreshold =
+    family_wise_threshold(1e-3, 600);  // of all comparisons in this file
+constexpr double kQuadrature = 1e-5;   // what quadrature may be off
 
 // ---- Transmittance ----------------------------------------------------------------------------
 
@@ -137,7 +138,7 @@ std::string describe(const TransmittanceCase& test) {
 TEST(OverlappingTransmittance, AgreesWithQuadrature) {
   for (const TransmittanceCase& test : transmittance_cases()) {
     for (const int ray : {0, 2}) {
-      EXPECT_LT(transmittance_z(test, ray), kThreshold) << describe(test);
+      EXPECT_LT(transmittance_z(test, ray), kOverlapThreshold) << describe(test);
     }
   }
 }
@@ -146,23 +147,23 @@ TEST(OverlappingTransmittance, AgreesWithQuadrature) {
 TEST(OverlappingTransmittance, OnePercentOfTheExtinctionIsNoticed) {
   for (const TransmittanceCase& test : transmittance_cases()) {
     if (test.paths > 1 && test.paths < 100'000) continue;
-    EXPECT_GT(transmittance_z(test, 0, 1.01F), kThreshold) << describe(test);
+    EXPECT_GT(transmittance_z(test, 0, 1.01F), kOverlapThreshold) << describe(test);
   }
 }
 
 // ---- Free paths -------------------------------------------------------------------------------
 
-constexpr int kBins = 6;
+constexpr int kLengthBins = 6;
 /// Weights of flights that scatter in a component, are absorbed, escape, end in a part of the ray;
 /// and the tally of emission.
-enum Quantity {
-  kScatterFirst,
-  kScatterSecond,
-  kAbsorb,
-  kEscape,
-  kEmitted,
-  kBin,
-  kQuantities = kBin + kBins
+enum TalliedQuantity {
+  kTalliedScatterFirst,
+  kTalliedScatterSecond,
+  kTalliedAbsorb,
+  kTalliedEscape,
+  kTalliedEmitted,
+  kTalliedBin,
+  kTallied = kTalliedBin + kLengthBins
 };
 
 struct FlightCase {
@@ -201,11 +202,11 @@ std::string describe(const FlightCase& test) {
          (test.grey ? ", grey" : ", chromatic");
 }
 
-using Tallies = std::array<std::array<Tally, kQuantities>, kChannels>;
-using Expectations = std::array<std::array<double, kQuantities>, kChannels>;
+using Tallies = std::array<std::array<Tally, kTallied>, kChannels>;
+using ExpectedTallies = std::array<std::array<double, kTallied>, kChannels>;
 
 int bin_of(double t, const TestRay& ray) {
-  return std::clamp(static_cast<int>(kBins * t / ray.t_max), 0, kBins - 1);
+  return std::clamp(static_cast<int>(kLengthBins * t / ray.t_max), 0, kLengthBins - 1);
 }
 
 Tallies fly(const std::vector<Component>& components, const FlightCase& test) {
@@ -219,50 +220,51 @@ Tallies fly(const std::vector<Component>& components, const FlightCase& test) {
   const TestRay ray = test_rays()[0];
   Tallies tallies;
   for_each_flight(walker, ray, test.paths, [&](const FlightStream& flights, std::size_t i) {
-    const Quantity end = flights.event[i] == Event::kEscape   ? kEscape
-                         : flights.event[i] == Event::kAbsorb ? kAbsorb
-                         : flights.component[i] == 0          ? kScatterFirst
-                                                              : kScatterSecond;
+    const TalliedQuantity end = flights.event[i] == Event::kEscape   ? kTalliedEscape
+                                : flights.event[i] == Event::kAbsorb ? kTalliedAbsorb
+                                : flights.component[i] == 0          ? kTalliedScatterFirst
+                                                                     : kTalliedScatterSecond;
     for (int slot = 0; slot < walker.channels(); ++slot) {
       auto& row = tallies[test.channel < 0 ? slot : test.channel];
       row[end].add(flights.weight[slot][i]);
-      row[kEmitted].add(flights.emitted[slot][i]);
-      if (end != kEscape) row[kBin + bin_of(flights.t[i], ray)].add(flights.weight[slot][i]);
+      row[kTalliedEmitted].add(flights.emitted[slot][i]);
+      if (end != kTalliedEscape)
+        row[kTalliedBin + bin_of(flights.t[i], ray)].add(flights.weight[slot][i]);
     }
   });
   return tallies;
 }
 
-Expectations expect(const std::vector<Component>& components,
-                    const std::array<RayIntegrals, kChannels>& integrals) {
-  Expectations expected{};
+ExpectedTallies expect(const std::vector<Component>& components,
+                       const std::array<RayIntegrals, kChannels>& integrals) {
+  ExpectedTallies expected{};
   for (int channel = 0; channel < kChannels; ++channel) {
     const RayIntegrals& along = integrals[channel];
     auto& row = expected[channel];
-    row[kEscape] = along.transmittance();
+    row[kTalliedEscape] = along.transmittance();
     for (int k = 0; k < 2; ++k) {
       const Component& component = components[k];
       row[k] = component.sigma_s[channel] * along.collided[k];
       const double absorbed = component.sigma_a[channel] * along.collided[k];
-      row[kAbsorb] += absorbed;
-      row[kEmitted] += absorbed * component.emission[channel];
+      row[kTalliedAbsorb] += absorbed;
+      row[kTalliedEmitted] += absorbed * component.emission[channel];
     }
-    for (int bin = 0; bin < kBins; ++bin) {
+    for (int bin = 0; bin < kLengthBins; ++bin) {
       const auto passed = [&](int edge) {
-        return std::exp(-along.depth_at(double(test_rays()[0].t_max) * edge / kBins));
+        return std::exp(-along.depth_at(double(test_rays()[0].t_max) * edge / kLengthBins));
       };
-      row[kBin + bin] = passed(bin) - passed(bin + 1);
+      row[kTalliedBin + bin] = passed(bin) - passed(bin + 1);
     }
   }
   return expected;
 }
 
 /// The largest z of all quantities in the channels that are walked.
-double largest_z(const Tallies& tallies, const Expectations& expected, const FlightCase& test) {
+double largest_z(const Tallies& tallies, const ExpectedTallies& expected, const FlightCase& test) {
   double largest = 0;
   for (int channel = 0; channel < kChannels; ++channel) {
     if (test.channel >= 0 && channel != test.channel) continue;
-    for (int q = 0; q < kQuantities; ++q) {
+    for (int q = 0; q < kTallied; ++q) {
       const Tally& tally = tallies[channel][q];
       const double error = tally.standard_error(test.paths);
       const double z =
@@ -283,7 +285,7 @@ double flight_z(const FlightCase& test, float planted = 1) {
 TEST(OverlappingFreePaths, EndWhereAndHowQuadratureSays) {
   ASSERT_FALSE(Medium(overlapping(second_field(), true)).aligned());
   for (const FlightCase& test : flight_cases()) {
-    EXPECT_LT(flight_z(test), kThreshold) << describe(test);
+    EXPECT_LT(flight_z(test), kOverlapThreshold) << describe(test);
   }
 }
 
@@ -291,7 +293,7 @@ TEST(OverlappingFreePaths, EndWhereAndHowQuadratureSays) {
 TEST(OverlappingFreePaths, OnePercentOfTheExtinctionIsNoticed) {
   for (const FlightCase& test : flight_cases()) {
     if (test.tracker == std::string_view("regular")) continue;  // fewer paths: it is slow
-    EXPECT_GT(flight_z(test, 1.01F), kThreshold) << describe(test);
+    EXPECT_GT(flight_z(test, 1.01F), kOverlapThreshold) << describe(test);
   }
 }
 
@@ -304,11 +306,11 @@ TEST(OverlappingFreePaths, AnAlignedPairGivenAsUnalignedIsTheSame) {
     ASSERT_FALSE(Medium(padded).aligned());
     std::array<RayIntegrals, kChannels> integrals;
     integrals.fill(integrate(Medium(aligned), test_rays()[0], interpolation, 200'000));
-    const Expectations expected = expect(aligned, integrals);
+    const ExpectedTallies expected = expect(aligned, integrals);
     for (const char* tracker : {"delta", "decomposition", "multi-volume"}) {
       const FlightCase test{tracker, interpolation, true, Walker::kAllChannels, 200'000};
-      EXPECT_LT(largest_z(fly(aligned, test), expected, test), kThreshold) << describe(test);
-      EXPECT_LT(largest_z(fly(padded, test), expected, test), kThreshold) << describe(test);
+      EXPECT_LT(largest_z(fly(aligned, test), expected, test), kOverlapThreshold) << describe(test);
+      EXPECT_LT(largest_z(fly(padded, test), expected, test), kOverlapThreshold) << describe(test);
     }
   }
 }

@@ -38,7 +38,7 @@ constexpr Estimator kEstimators[] = {
 };
 
 /// Family of all comparisons in this file.
-const double kThreshold = family_wise_threshold(1e-3, 150);
+const double kTransmittanceThreshold = family_wise_threshold(1e-3, 150);
 
 /// Optical depth of unit cross section, by quadrature of what the interpolation means.
 double unit_depth(int ray, Interpolation interpolation) {
@@ -89,7 +89,8 @@ double unit_depth(int ray, Interpolation interpolation) {
                            std::to_string(thickness.depth);
   const double expected = std::exp(-thickness.depth);
   // The quadrature of a field that jumps is good to 1e-5.
-  return check_mean(name, result, expected, {.z = kThreshold, .absolute = 2e-5 * expected});
+  return check_mean(name, result, expected,
+                    {.z = kTransmittanceThreshold, .absolute = 2e-5 * expected});
 }
 
 TEST(Transmittance, EveryEstimatorAgreesWithQuadrature) {

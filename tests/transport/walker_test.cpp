@@ -132,7 +132,7 @@ std::vector<float> flight_values(const FlightStream& flights, std::size_t i, int
   return values;
 }
 
-struct Flown {
+struct Walked {
   std::vector<std::vector<float>> flights;
   WalkStatistics statistics;
 };
@@ -169,9 +169,9 @@ std::vector<Method> all_methods() {
 }
 
 /// Walks a stream in batches.
-Flown fly(const Method& method, const RayStream& rays, std::size_t batch) {
+Walked fly(const Method& method, const RayStream& rays, std::size_t batch) {
   const Walker walker(colourful_medium(), method.settings);
-  Flown flown;
+  Walked flown;
   FlightStream flights;
   for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
     std::vector<std::size_t> slots(std::min(batch, rays.size() - begin));
@@ -211,14 +211,14 @@ TEST(Walker, FlightsDependNeitherOnSlotsNorOnBatchesNorOnNeighbours) {
   RandomStream random(1, 0, 0, 0);
   for (std::size_t i = kRays - 1; i > 0; --i) std::swap(order[i], order[random.bits() % (i + 1)]);
   for (const Method& method : all_methods()) {
-    const Flown together = fly(method, rays, kRays);
-    const Flown shuffled = fly(method, select(rays, order), kRays);
+    const Walked together = fly(method, rays, kRays);
+    const Walked shuffled = fly(method, select(rays, order), kRays);
     for (std::size_t i = 0; i < kRays; ++i) {
       ASSERT_EQ(shuffled.flights[i], together.flights[order[i]]) << method.name;
     }
     expect_same_statistics(shuffled.statistics, together.statistics, method.name);
     for (const std::size_t batch : {1, 7, 16, 17, 400}) {
-      const Flown apart = fly(method, rays, batch);
+      const Walked apart = fly(method, rays, batch);
       ASSERT_EQ(apart.flights, together.flights) << method.name << ", batches of " << batch;
       expect_same_statistics(apart.statistics, together.statistics, method.name);
     }
@@ -233,9 +233,9 @@ TEST(Walker, Avx2AndAvx512GiveTheSameBits) {
   const RayStream rays = various_rays(20'000);
   for (Method method : all_methods()) {
     method.settings.simd = Simd::kAvx512;
-    const Flown wide = fly(method, rays, rays.size());
+    const Walked wide = fly(method, rays, rays.size());
     method.settings.simd = Simd::kAvx2;
-    const Flown narrow = fly(method, rays, rays.size());
+    const Walked narrow = fly(method, rays, rays.size());
     ASSERT_EQ(wide.flights, narrow.flights) << method.name;
     expect_same_statistics(wide.statistics, narrow.statistics, method.name);
   }
@@ -244,7 +244,7 @@ TEST(Walker, Avx2AndAvx512GiveTheSameBits) {
 TEST(Walker, CountsAddUp) {
   const RayStream rays = various_rays(20'000);
   for (const Method& method : all_methods()) {
-    const Flown flown = fly(method, rays, 1000);
+    const Walked flown = fly(method, rays, 1000);
     const WalkStatistics& s = flown.statistics;
     EXPECT_EQ(s.rays, rays.size());
     EXPECT_EQ(s.null_collisions + s.real_collisions, s.tentative_collisions);
@@ -266,7 +266,7 @@ TEST(Walker, CountsAddUp) {
 TEST(Walker, SeedsMakeOtherFlights) {
   const RayStream rays = various_rays(100);
   Method method = all_methods()[0];
-  const Flown before = fly(method, rays, 100);
+  const Walked before = fly(method, rays, 100);
   for (const uint64_t seed : {uint64_t{1}, uint64_t{1} << 32}) {
     method.settings.seed = seed;
     EXPECT_NE(fly(method, rays, 100).flights, before.flights);

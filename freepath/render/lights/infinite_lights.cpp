@@ -10,8 +10,6 @@
 namespace freepath {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Cells of a portal's grid along an axis, for an image.
 int portal_cells(int image_size) { return std::clamp(image_size, 64, 1024); }
 
@@ -35,7 +33,7 @@ double illuminance_of(const Environment& environment, const Vec3f& up, const Vec
       sum += cosine * weights.dot(Vec3d(colour_of(environment.evaluate(d).radiance)));
     }
   }
-  return 4 * kPi * sum / (static_cast<double>(size) * size);
+  return 4 * std::numbers::pi * sum / (static_cast<double>(size) * size);
 }
 
 Image without_negative(Image image) {
@@ -48,8 +46,9 @@ Image without_negative(Image image) {
 void InfiniteLights::add(const ConstantInfiniteLight& light, const Vec3d& origin,
                          const SpectrumTable& table) {
   const SpectralDistribution& spectrum = table.spectrum(light.radiance);
-  const double factor = light_factor(spectrum, light.scale, light.illuminance, kPi, light.name);
-  const double importance = 4 * kPi * factor * brightness(spectrum);
+  const double factor =
+      light_factor(spectrum, light.scale, light.illuminance, std::numbers::pi, light.name);
+  const double importance = 4 * std::numbers::pi * factor * brightness(spectrum);
   if (importance <= 0) return;
   Light result{Constant{light.radiance}, static_cast<float>(factor)};
   if (light.portal) {

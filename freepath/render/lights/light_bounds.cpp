@@ -7,8 +7,6 @@
 namespace freepath {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 float sine_of(float cosine) { return std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)); }
 
 double angle_of(float cosine) {
@@ -36,11 +34,11 @@ DirectionCone unite(const DirectionCone& a, const DirectionCone& b) {
   // By the chord, since the cosine has no digits left for small angles.
   const double chord = (Vec3d(wide.axis) - Vec3d(narrow.axis)).length();
   const double between = 2 * std::asin(std::min(1.0, 0.5 * chord));
-  if (std::min(between + narrow_angle, kPi) <= wide_angle) return wide;
+  if (std::min(between + narrow_angle, std::numbers::pi) <= wide_angle) return wide;
   const double angle = 0.5 * (wide_angle + between + narrow_angle);
   const Vec3d across =
       Vec3d(narrow.axis) - Vec3d(wide.axis) * Vec3d(wide.axis).dot(Vec3d(narrow.axis));
-  if (angle >= kPi || across.length() < 1e-12) return {wide.axis, -1};
+  if (angle >= std::numbers::pi || across.length() < 1e-12) return {wide.axis, -1};
   const double turn = angle - wide_angle;
   const Vec3d axis = Vec3d(wide.axis) * std::cos(turn) + across.normalized() * std::sin(turn);
   return {Vec3f(axis.normalized()), static_cast<float>(std::cos(angle))};
@@ -82,9 +80,9 @@ float importance(const LightBounds& bounds, const Vec3f& position) {
 
 double orientation_cost(const LightBounds& bounds) {
   const double spread = angle_of(bounds.normals.cosine);
-  const double reach = std::min(spread + angle_of(bounds.cosine_reach), kPi);
-  return 2 * kPi * (1 - std::cos(spread)) +
-         0.5 * kPi *
+  const double reach = std::min(spread + angle_of(bounds.cosine_reach), std::numbers::pi);
+  return 2 * std::numbers::pi * (1 - std::cos(spread)) +
+         0.5 * std::numbers::pi *
              (2 * reach * std::sin(spread) - std::cos(spread - 2 * reach) -
               2 * spread * std::sin(spread) + std::cos(spread));
 }

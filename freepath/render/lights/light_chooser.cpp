@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "freepath/base/random.h"
+
 namespace freepath {
 namespace {
-
-constexpr float kBelowOne = 1.0F - 0x1p-24F;
 
 /// Cost of a group: power, times the size of what it bounds in space and direction. The squared
 /// diagonal stands for the surface, which would vanish for lights in a line.

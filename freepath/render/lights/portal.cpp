@@ -10,8 +10,6 @@
 namespace freepath {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// The point of [low, high] where an increasing function, linear between whole numbers, reaches a
 /// target.
 template <class Function>
@@ -54,9 +52,9 @@ Portal::Portal(const PortalCorners& corners, const Vec3d& origin,
   const auto size = static_cast<std::size_t>(cells);
   values_.resize(size * size);
   for (std::size_t row = 0; row < size; ++row) {
-    const double b = kPi * ((static_cast<double>(row) + 0.5) / cells - 0.5);
+    const double b = std::numbers::pi * ((static_cast<double>(row) + 0.5) / cells - 0.5);
     for (std::size_t column = 0; column < size; ++column) {
-      const double a = kPi * ((static_cast<double>(column) + 0.5) / cells - 0.5);
+      const double a = std::numbers::pi * ((static_cast<double>(column) + 0.5) / cells - 0.5);
       const Vec3d local = Vec3d(std::tan(a), std::tan(b), 1).normalized();
       const Vec3d direction = Vec3d(x_) * local.x + Vec3d(y_) * local.y + Vec3d(z_) * local.z;
       const double solid_angle = (1 - local.x * local.x) * (1 - local.y * local.y) / local.z;
@@ -78,7 +76,7 @@ Portal::Portal(const PortalCorners& corners, const Vec3d& origin,
 }
 
 double Portal::angle_in_cells(float across, float ahead) const {
-  return cells_ * (0.5 + std::atan2(across, ahead) / kPi);
+  return cells_ * (0.5 + std::atan2(across, ahead) / std::numbers::pi);
 }
 
 int Portal::cell_of(double coordinate) const {
@@ -121,8 +119,8 @@ float Portal::pdf(const Vec3f& from, const Vec3f& direction) const {
   // 1 - x² and 1 - y² of a unit vector, which do not cancel near the portal's plane.
   const float not_x = d.y * d.y + d.z * d.z;
   const float not_y = d.x * d.x + d.z * d.z;
-  const double cells_per_steradian =
-      d.z / (kPi * kPi * not_x * not_y) * static_cast<double>(cells_) * cells_;
+  const double cells_per_steradian = d.z / (std::numbers::pi * std::numbers::pi * not_x * not_y) *
+                                     static_cast<double>(cells_) * cells_;
   return total > 0 ? static_cast<float>(value(cell_of(u), cell_of(v)) / total * cells_per_steradian)
                    : 0;
 }
@@ -143,8 +141,8 @@ std::optional<Vec3f> Portal::sample(const Vec3f& from, float u0, float u1) const
     return integral({static_cast<double>(column), window.v0, column + 1.0, to});
   };
   const double v = reach(along, window.v0, window.v1, u1 * along(window.v1));
-  const double a = kPi * (u / cells_ - 0.5);
-  const double b = kPi * (v / cells_ - 0.5);
+  const double a = std::numbers::pi * (u / cells_ - 0.5);
+  const double b = std::numbers::pi * (v / cells_ - 0.5);
   // (tan a, tan b, 1), times both cosines so that it is finite.
   const Vec3d local =
       Vec3d(std::sin(a) * std::cos(b), std::cos(a) * std::sin(b), std::cos(a) * std::cos(b))

@@ -13,9 +13,7 @@
 namespace freepath {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-double radians(double degrees) { return degrees * (kPi / 180); }
+double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
 /// Solid angle of a rectangle from the axis to (x, y) in the plane at distance 1.
 double solid_angle_to(double x, double y) {
@@ -49,7 +47,7 @@ PunctualLight::PunctualLight(const PointLight& light, const Vec3d& origin,
                              const SpectrumTable& table)
     : kind_(Kind::kPoint) {
   set_position(transform_point(light.from, light.light_to_world) - origin);
-  set_spectrum(light.intensity, light.scale, light.power, 4 * kPi, table, light.name);
+  set_spectrum(light.intensity, light.scale, light.power, 4 * std::numbers::pi, table, light.name);
   bounds_.normals.cosine = -1;
 }
 
@@ -77,7 +75,8 @@ PunctualLight::PunctualLight(const SpotLight& light, const Vec3d& origin,
   cosine_end_ = static_cast<float>(std::cos(radians(end)));
   cosine_start_ = static_cast<float>(std::cos(radians(start)));
   // The mean of the smooth step is 1/2.
-  const double flux = 2 * kPi * (1 - 0.5 * (static_cast<double>(cosine_start_) + cosine_end_));
+  const double flux =
+      2 * std::numbers::pi * (1 - 0.5 * (static_cast<double>(cosine_start_) + cosine_end_));
   set_spectrum(light.intensity, light.scale, light.power, flux, table, light.name);
   bounds_.normals.axis = frame_.to_world({0, 0, 1}).normalized();
   bounds_.cosine_reach = cosine_end_ - 1e-3F;
@@ -104,7 +103,8 @@ PunctualLight::PunctualLight(const GoniometricLight& light, const Vec3d& origin,
     mean = std::accumulate(factors_.begin(), factors_.end(), 0.0) /
            static_cast<double>(factors_.size());
   }
-  set_spectrum(light.intensity, light.scale, light.power, 4 * kPi * mean, table, light.name);
+  set_spectrum(light.intensity, light.scale, light.power, 4 * std::numbers::pi * mean, table,
+               light.name);
   bounds_.normals.cosine = -1;
 }
 

@@ -8,13 +8,11 @@
 #include <variant>
 
 #include "freepath/base/error.h"
+#include "freepath/base/random.h"
 #include "freepath/render/lights/photometry.h"
 
 namespace freepath {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr float kBelowOne = 1.0F - 0x1p-24F;
 
 /// Bilinear interpolant at (u, v), continued by the pixels of the edge; v = 0 is the last row.
 Vec3f image_colour(const std::vector<Vec3f>& colours, int width, int height, float u, float v) {
@@ -136,7 +134,7 @@ std::vector<LightBounds> SceneLights::add_area_lights(const SceneLightsDescripti
                       light.reversed, light.invisible});
     for (uint32_t part = 0; part < light.geometry->part_count(); ++part) {
       const EmitterBounds bounds = light.geometry->bounds(part);
-      const double spread = sides * kPi * bounds.area;  // [m² sr]
+      const double spread = sides * std::numbers::pi * bounds.area;  // [m² sr]
       double factor = plain;
       // A triangle without area emits nothing, whatever power it was to have.
       if (emission.power && bounds.area > 0) {

@@ -35,9 +35,6 @@ float refraction_jacobian(float cosine_out, float cosine_in, float eta) {
   return std::abs(cosine_in) / (root * root);
 }
 
-/// Turned so that it lies above, and back.
-Vec3f with_side(const Vec3f& v, float side) { return {v.x, v.y, side * v.z}; }
-
 }  // namespace
 
 float DielectricInterface::reflection_cosine(const Vec3f& out, const Vec3f& in) {

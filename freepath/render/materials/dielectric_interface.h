@@ -15,6 +15,10 @@ enum class TransportMode { kRadiance, kImportance };
 /// Which events to draw.
 enum class InterfaceEvents { kAll, kReflection, kTransmission };
 
+/// A direction of the local frame with its z times a side, 1 or -1: what lies below the surface
+/// turned to lie above, and back.
+inline Vec3f with_side(const Vec3f& v, float side) { return {v.x, v.y, side * v.z}; }
+
 struct InterfaceSample {
   Vec3f direction;
   float weight = 0;          ///< f |cosine| / density

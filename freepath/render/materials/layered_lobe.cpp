@@ -12,9 +12,6 @@ namespace freepath {
 
 namespace {
 
-/// Turned so that it comes from above, and back.
-Vec3f with_side(const Vec3f& v, float side) { return {v.x, v.y, side * v.z}; }
-
 /// Weight of a technique with density `own` against another [Veach97, Sec. 9.2.4].
 float power_weight(float own, float other) {
   const float squared = own * own;

@@ -10,8 +10,6 @@
 namespace freepath {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// A ray that moves less along an axis does not move [cells/m]; reciprocals stay finite.
 constexpr float kFlat = 1e-30F;
 
@@ -54,7 +52,7 @@ float EmissionGuide::pdf(const Vec3f& position, const Vec3f& direction) const {
   Vec3f along;
   Vec3f reciprocal;
   float begin = 0;
-  float last = kInfinity;
+  float last = std::numeric_limits<float>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     along[axis] = direction.x * linear[0][axis] + direction.y * linear[1][axis] +
                   direction.z * linear[2][axis];
@@ -76,7 +74,7 @@ float EmissionGuide::pdf(const Vec3f& position, const Vec3f& direction) const {
   // are rounded alike: the walk ends inside of the grid.
   Vec3f face;
   Vec3f pace;
-  Vec3f next(kInfinity);
+  Vec3f next(std::numeric_limits<float>::infinity());
   Vec3i stride(grid.counts.y * grid.counts.z, grid.counts.z, 1);
   int index = 0;
   for (int axis = 0; axis < 3; ++axis) {

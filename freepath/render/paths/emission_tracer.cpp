@@ -7,8 +7,6 @@
 namespace freepath {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Sets these flights' streams apart from those of paths, which never have so many flights, and
 /// from those of sample sequences (kSampleStreams).
 constexpr uint32_t kStreams = 0xA0000000U;
@@ -17,12 +15,13 @@ constexpr uint32_t kStreams = 0xA0000000U;
 
 void EmissionTracer::add(uint32_t owner, const ScenePath& path, const Vec3f& position,
                          const Vec3f& direction, const Channels& weight) {
-  float length = kInfinity;
+  float length = std::numeric_limits<float>::infinity();
   // No surface cuts the medium where it is clear.
   const bool clear = scene_.is_clear[path.medium] &&
                      scene_.media[path.medium].bounds().intersects(Vec3d(position) + scene_.origin);
   if (scene_.surfaces && !clear) {
-    if (const auto hit = scene_.surfaces->intersect(position, direction, 0, kInfinity)) {
+    if (const auto hit = scene_.surfaces->intersect(position, direction, 0,
+                                                    std::numeric_limits<float>::infinity())) {
       length = hit->t;
     }
   }

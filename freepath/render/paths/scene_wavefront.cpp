@@ -11,8 +11,6 @@ namespace {
 /// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
 constexpr float kLargestThroughput = 1e28F;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 // Dimensions of SampleSequence.
 constexpr uint32_t kFilmDimension = 0;
 constexpr uint32_t kLensDimension = 1;
@@ -121,7 +119,8 @@ bool SceneWavefront::needs_surfaces_first(const ScenePath& path) const {
 void SceneWavefront::find_surface(ScenePath& path) const {
   path.surfaces_known = true;
   if (scene_.surfaces) {
-    path.hit = scene_.surfaces->intersect(path.origin, path.direction, 0, kInfinity);
+    path.hit = scene_.surfaces->intersect(path.origin, path.direction, 0,
+                                          std::numeric_limits<float>::infinity());
   }
 }
 
@@ -138,7 +137,8 @@ void SceneWavefront::fly() {
     const Walker& walker = walkers[path.channel < 0 ? 0 : path.channel];
     auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(slot));
     RayStream& rays = batch.rays;
-    set_ray(rays, i, path.origin, path.direction, path.hit ? path.hit->t : kInfinity);
+    set_ray(rays, i, path.origin, path.direction,
+            path.hit ? path.hit->t : std::numeric_limits<float>::infinity());
     rays.pixel[i] = path.pixel;
     rays.sample[i] = path.sample_key;
     rays.stream[i] = stream_number(StreamPurpose::kWalk, path.flights);

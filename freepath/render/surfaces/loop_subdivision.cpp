@@ -194,7 +194,6 @@ Level Level::refine() const {
 
 /// The cross product of two tangents.
 Vec3d Level::normal(int centre, const std::vector<int>& around) const {
-  constexpr double kPi = std::numbers::pi;
   const std::size_t n = around.size();
   if (n < 2) return Vec3d(0, 0, 1);
   const auto at = [&](std::size_t k) { return positions_[around[k]]; };
@@ -202,7 +201,7 @@ Vec3d Level::normal(int centre, const std::vector<int>& around) const {
   Vec3d t(0);
   if (!boundary_[centre]) {
     for (std::size_t k = 0; k < n; ++k) {
-      const double angle = 2 * kPi * static_cast<double>(k) / static_cast<double>(n);
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
       s += at(k) * std::cos(angle);
       t += at(k) * std::sin(angle);
     }
@@ -217,7 +216,7 @@ Vec3d Level::normal(int centre, const std::vector<int>& around) const {
   } else if (n == 4) {
     t = at(1) * 2 + at(2) * 2 - at(0) - at(3) - p * 2;
   } else {
-    const double theta = kPi / static_cast<double>(n - 1);
+    const double theta = std::numbers::pi / static_cast<double>(n - 1);
     t = (at(0) + at(n - 1)) * -std::sin(theta);
     for (std::size_t k = 1; k + 1 < n; ++k) {
       t += at(k) * ((2 - 2 * std::cos(theta)) * std::sin(static_cast<double>(k) * theta));

@@ -7,16 +7,14 @@
 namespace freepath {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 // Stands for the distance from the axis where there is no azimuth.
 constexpr double kPoleOffset = 1e-5;
 
-double radians(double degrees) { return std::min(degrees, 360.0) * (kPi / 180); }
+double radians(double degrees) { return std::min(degrees, 360.0) * (std::numbers::pi / 180); }
 
 double azimuth(const Vec3d& p) {
   const double phi = std::atan2(p.y, p.x);
-  return phi < 0 ? phi + 2 * kPi : phi;
+  return phi < 0 ? phi + 2 * std::numbers::pi : phi;
 }
 
 /// Where a line meets the set of points at `radius` from the origin; for a cylinder without z.

@@ -11,8 +11,8 @@
 namespace freepath {
 namespace {
 
-constexpr std::string_view kKinds[] = {"distant", "goniometric", "infinite",
-                                       "point",   "projection",  "spot"};
+constexpr std::string_view kLightKinds[] = {"distant", "goniometric", "infinite",
+                                            "point",   "projection",  "spot"};
 
 /// Reads one statement.
 class LightReader {
@@ -27,7 +27,7 @@ class LightReader {
     if (type == "spot") return spot();
     if (type == "goniometric") return goniometric();
     if (type == "projection") return projection();
-    const std::string_view nearest = nearest_name(type, kKinds);
+    const std::string_view nearest = nearest_name(type, kLightKinds);
     fail_at(list_.location(),
             "there is no light {}{}; known are distant, goniometric, infinite, point, projection, "
             "spot, and AreaLightSource 'diffuse'",

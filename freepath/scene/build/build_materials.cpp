@@ -18,14 +18,14 @@
 namespace freepath {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSupported = {
+constexpr std::array<std::string_view, 8> kMaterials = {
     "coatedconductor", "coateddiffuse", "conductor", "dielectric",
     "diffuse",         "interface",     "mix",       "thindielectric"};
-constexpr std::array<std::string_view, 4> kUnsupported = {"diffusetransmission", "hair", "measured",
-                                                          "subsurface"};
+constexpr std::array<std::string_view, 4> kUnsupportedMaterials = {"diffusetransmission", "hair",
+                                                                   "measured", "subsurface"};
 
 /// Mixes of mixes are looked through at each hit, and destroyed by recursion.
-constexpr int kDeepest = 64;
+constexpr int kDeepestMix = 64;
 
 /// Builds one material from its parameters.
 class MaterialParameters {
@@ -196,7 +196,7 @@ MaterialBuilder::Built MaterialBuilder::build(const PbrtMaterial& material, int 
   if (type == "coateddiffuse") return with_surface(parameters.coated_diffuse());
   if (type == "coatedconductor") return with_surface(parameters.coated_conductor());
   if (type == "mix") return mix(material, depth);
-  fail_unknown_type(material, "material", kSupported, kUnsupported);
+  fail_unknown_type(material, "material", kMaterials, kUnsupportedMaterials);
 }
 
 MaterialBuilder::Built MaterialBuilder::mix(const PbrtMaterial& material, int depth) {
@@ -207,16 +207,16 @@ MaterialBuilder::Built MaterialBuilder::mix(const PbrtMaterial& material, int de
             "a mix needs the names of two materials in a parameter \"string materials\", has {}",
             names.size());
   }
-  int height = kDeepest + 1;
+  int height = kDeepestMix + 1;
   MixMaterial made;
-  if (depth < kDeepest) {
+  if (depth < kDeepestMix) {
     const Built& first = part_of_mix(list, names[0], depth + 1);
     const Built& second = part_of_mix(list, names[1], depth + 1);
     height = 1 + std::max(first.height, second.height);
     made = {first.material, second.material, float_input(context_, list, "amount", 0.5)};
   }
-  if (height > kDeepest) {
-    fail_at(material.location, "this mix is part of a nest of more than {} mixes", kDeepest);
+  if (height > kDeepestMix) {
+    fail_at(material.location, "this mix is part of a nest of more than {} mixes", kDeepestMix);
   }
   return {std::make_shared<const Material>(std::move(made)), height};
 }

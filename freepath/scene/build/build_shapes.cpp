@@ -17,8 +17,8 @@
 namespace freepath {
 namespace {
 
-constexpr std::string_view kKinds[] = {"bilinearmesh", "cylinder", "disk",        "loopsubdiv",
-                                       "plymesh",      "sphere",   "trianglemesh"};
+constexpr std::string_view kShapeKinds[] = {"bilinearmesh", "cylinder", "disk",        "loopsubdiv",
+                                            "plymesh",      "sphere",   "trianglemesh"};
 
 std::vector<int> indices_of(const ParameterList& list, std::size_t positions, int corners) {
   const std::span<const int> given = list.get_integers("indices");
@@ -70,7 +70,7 @@ std::vector<ShapeGeometry> read_geometry(BuildContext& context, const PbrtShape&
     const std::vector<int> indices = indices_of(list, positions.size(), 3);
     return {subdivide_loop(positions, indices, list.get_integer("levels", 3))};
   }
-  const std::string_view nearest = nearest_name(shape.type, kKinds);
+  const std::string_view nearest = nearest_name(shape.type, kShapeKinds);
   fail(
       "there is no shape {}{}; known are bilinearmesh, cylinder, disk, loopsubdiv, plymesh, "
       "sphere, trianglemesh",

@@ -16,13 +16,13 @@
 namespace freepath {
 namespace {
 
-constexpr std::array<std::string_view, 5> kSupported = {"checkerboard", "constant", "imagemap",
-                                                        "mix", "scale"};
-constexpr std::array<std::string_view, 8> kUnsupported = {
+constexpr std::array<std::string_view, 5> kTextures = {"checkerboard", "constant", "imagemap",
+                                                       "mix", "scale"};
+constexpr std::array<std::string_view, 8> kUnsupportedTextures = {
     "bilerp", "directionmix", "dots", "fbm", "marble", "ptex", "windy", "wrinkled"};
 
 /// Textures within textures are evaluated by recursion.
-constexpr int kDeepest = 64;
+constexpr int kDeepestTexture = 64;
 
 UvMapping uv_mapping(const ParameterList& list) {
   const std::string mapping = list.get_string("mapping", "uv");
@@ -118,10 +118,10 @@ int TextureBuilder::build(const Job& job, int depth) {
   if (!begun_.insert(job).second) {
     fail_at(texture.location, "texture {} is made of itself", in_quotes(texture.name));
   }
-  const int height = depth < kDeepest ? 1 + build_parts(job, depth) : kDeepest + 1;
-  if (height > kDeepest) {
+  const int height = depth < kDeepestTexture ? 1 + build_parts(job, depth) : kDeepestTexture + 1;
+  if (height > kDeepestTexture) {
     fail_at(texture.location, "texture {} is part of a nest of more than {} textures",
-            in_quotes(texture.name), kDeepest);
+            in_quotes(texture.name), kDeepestTexture);
   }
   add(job);
   heights_.emplace(job, height);
@@ -148,8 +148,8 @@ int TextureBuilder::build_parts(const Job& job, int depth) {
 
 void TextureBuilder::add(const Job& job) {
   const PbrtTexture& texture = context_.pbrt.textures[job.texture];
-  if (std::find(kSupported.begin(), kSupported.end(), texture.type) == kSupported.end()) {
-    fail_unknown_type(texture, "texture", kSupported, kUnsupported);
+  if (std::find(kTextures.begin(), kTextures.end(), texture.type) == kTextures.end()) {
+    fail_unknown_type(texture, "texture", kTextures, kUnsupportedTextures);
   }
   TextureTable& table = context_.scene.textures;
   if (texture.kind == PbrtTextureKind::kFloat) {

@@ -21,7 +21,7 @@ void expect_same(std::string_view text, const PhaseFunction& expected) {
       << text;
 }
 
-std::string message(std::string_view text) {
+std::string parse_message(std::string_view text) {
   try {
     parse_phase_function(text);
   } catch (const Error& error) {
@@ -68,46 +68,49 @@ TEST(ParsePhaseFunction, ReadsATableRelativeToAFolder) {
 }
 
 TEST(ParsePhaseFunction, SaysWhatIsWrong) {
-  EXPECT_EQ(message("raleigh"), "there is no phase function 'raleigh'; did you mean 'rayleigh'?");
-  EXPECT_EQ(message("xyzzy"),
+  EXPECT_EQ(parse_message("raleigh"),
+            "there is no phase function 'raleigh'; did you mean 'rayleigh'?");
+  EXPECT_EQ(parse_message("xyzzy"),
             "there is no phase function 'xyzzy'; there are isotropic, henyey-greenstein, rayleigh, "
             "draine, droplets, tabulated");
-  EXPECT_EQ(message(""),
+  EXPECT_EQ(parse_message(""),
             "there is no phase function ''; there are isotropic, henyey-greenstein, rayleigh, "
             "draine, droplets, tabulated");
-  EXPECT_EQ(message("isotropic:g=0"), "isotropic: takes no parameters, and has 'g=0'");
-  EXPECT_EQ(message("henyey-greenstein"),
+  EXPECT_EQ(parse_message("isotropic:g=0"), "isotropic: takes no parameters, and has 'g=0'");
+  EXPECT_EQ(parse_message("henyey-greenstein"),
             "henyey-greenstein: g is missing: henyey-greenstein:g=NUMBER");
-  EXPECT_EQ(message("draine:g=0.5"), "draine: alpha is missing: draine:g=NUMBER,alpha=NUMBER");
-  EXPECT_EQ(message("draine:0.5"), "draine: '0.5' should read g=NUMBER or alpha=NUMBER");
-  EXPECT_EQ(message("draine:g=0.5,beta=1"),
+  EXPECT_EQ(parse_message("draine:g=0.5"),
+            "draine: alpha is missing: draine:g=NUMBER,alpha=NUMBER");
+  EXPECT_EQ(parse_message("draine:0.5"), "draine: '0.5' should read g=NUMBER or alpha=NUMBER");
+  EXPECT_EQ(parse_message("draine:g=0.5,beta=1"),
             "draine: there is no parameter 'beta'; it takes g and alpha");
-  EXPECT_EQ(message("draine:g=0.5,g=0.5"), "draine: g is given twice");
-  EXPECT_EQ(message("droplets:diameter=20um"), "droplets: diameter is '20um', which is no number");
-  EXPECT_EQ(message("droplets:diameter="), "droplets: diameter is '', which is no number");
-  EXPECT_EQ(message("henyey-greenstein:g=1"),
+  EXPECT_EQ(parse_message("draine:g=0.5,g=0.5"), "draine: g is given twice");
+  EXPECT_EQ(parse_message("droplets:diameter=20um"),
+            "droplets: diameter is '20um', which is no number");
+  EXPECT_EQ(parse_message("droplets:diameter="), "droplets: diameter is '', which is no number");
+  EXPECT_EQ(parse_message("henyey-greenstein:g=1"),
             "henyey-greenstein: g must lie between -1 and 1, and is 1");
-  EXPECT_EQ(message("henyey-greenstein:g=nan"),
+  EXPECT_EQ(parse_message("henyey-greenstein:g=nan"),
             "henyey-greenstein: g must lie between -1 and 1, and is nan");
-  EXPECT_EQ(message("tabulated"), "tabulated: the name of a file is missing: tabulated:FILE");
-  EXPECT_EQ(message("tabulated:no_such_file.txt"), "no_such_file.txt: cannot be opened");
-  EXPECT_EQ(message("tabulated:/"), "/: is a directory");
-  EXPECT_EQ(message("0.7*rayleigh+0.2*isotropic"),
+  EXPECT_EQ(parse_message("tabulated"), "tabulated: the name of a file is missing: tabulated:FILE");
+  EXPECT_EQ(parse_message("tabulated:no_such_file.txt"), "no_such_file.txt: cannot be opened");
+  EXPECT_EQ(parse_message("tabulated:/"), "/: is a directory");
+  EXPECT_EQ(parse_message("0.7*rayleigh+0.2*isotropic"),
             "a mixture of phase functions: the weights must sum to 1, and sum to 0.9");
-  EXPECT_EQ(message("1.5*rayleigh+-0.5*isotropic"),
+  EXPECT_EQ(parse_message("1.5*rayleigh+-0.5*isotropic"),
             "a mixture of phase functions: the weight -0.5 is negative or not finite");
-  EXPECT_EQ(message("rayleigh+0.5*isotropic"),
+  EXPECT_EQ(parse_message("rayleigh+0.5*isotropic"),
             "a mixture of phase functions: 'rayleigh' needs a weight, as in 0.5*rayleigh");
-  EXPECT_EQ(message("0.5*rayleigh+0.5*"),
+  EXPECT_EQ(parse_message("0.5*rayleigh+0.5*"),
             "there is no phase function ''; there are isotropic, henyey-greenstein, rayleigh, "
             "draine, droplets, tabulated");
-  EXPECT_EQ(message("1*rayleigh+"),
+  EXPECT_EQ(parse_message("1*rayleigh+"),
             "there is no phase function 'rayleigh+'; did you mean 'rayleigh'?");
 }
 
 TEST(ParsePhaseFunction, AllowsForTheRoundingOfWeights) {
-  EXPECT_EQ(message("0.33333*rayleigh+0.66666*isotropic"), "no error");
-  EXPECT_NE(message("0.333*rayleigh+0.666*isotropic"), "no error");
+  EXPECT_EQ(parse_message("0.33333*rayleigh+0.66666*isotropic"), "no error");
+  EXPECT_NE(parse_message("0.333*rayleigh+0.666*isotropic"), "no error");
 }
 
 TEST(PhaseFunctionFiles, AreThoseOfTables) {

@@ -27,8 +27,6 @@ using testing::check_chi_square;
 using testing::chi_square_test;
 using testing::RunningStatistics;
 
-constexpr double kPi = std::numbers::pi;
-
 // --- What is tested: every name that the parser knows, and what no name can say. ----------------
 
 PhaseFunction table(std::initializer_list<PhaseTablePoint> points) {
@@ -148,7 +146,7 @@ std::vector<double> cell_masses(const PhaseFunction& function) {
   const auto density = [&](double cell) {
     const double q = std::abs(2 * cell / kCells - 1);
     const double dh = 2 * std::pow(1 - q, 3) * 2 / kCells;  // |dh / dcell|
-    return evaluate(function, polar_at(cell)) * 4 * kPi * dh;
+    return evaluate(function, polar_at(cell)) * 4 * std::numbers::pi * dh;
   };
   std::vector<double> masses(kCells);
   double begin = density(0);
@@ -207,7 +205,7 @@ TEST_P(PhaseFunctionsTest, SamplesFollowTheFunction) {
     const Polar polar = polar_of(before, after);
     cosines.add(polar.rest - polar.h);
     const Vec3f local = frame.to_local(after);
-    const double azimuth = std::atan2(local.y, local.x) / (2 * kPi) + 0.5;
+    const double azimuth = std::atan2(local.y, local.x) / (2 * std::numbers::pi) + 0.5;
     const int sector = std::clamp(static_cast<int>(azimuth * kSectors), 0, kSectors - 1);
     const int cell = std::clamp(static_cast<int>(cell_of(polar)), 0, kCells - 1);
     ++counts[ring_of_cell[cell] * kSectors + sector];
@@ -283,12 +281,13 @@ double at_cosine(const PhaseFunction& function, double cosine) {
 /// [Draine03] in double precision.
 double draine_reference(double g, double alpha, double cosine) {
   return (1 - g * g) * (1 + alpha * cosine * cosine) /
-         (4 * kPi * (1 + alpha * (1 + 2 * g * g) / 3) * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+         (4 * std::numbers::pi * (1 + alpha * (1 + 2 * g * g) / 3) *
+          std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
 TEST(Rayleigh, EqualsTheFormula) {
   for (double cosine = -1; cosine <= 1; cosine += 0.05) {
-    const double expected = 3 * (1 + cosine * cosine) / (16 * kPi);
+    const double expected = 3 * (1 + cosine * cosine) / (16 * std::numbers::pi);
     EXPECT_NEAR(at_cosine(PhaseFunction::rayleigh(), cosine), expected, 1e-6 * expected);
   }
 }
@@ -322,7 +321,7 @@ TEST(Draine, SamplesExactQuantilesForEveryGAndAlpha) {
         for (int i = 0; i <= kSteps; ++i) {
           const double x = begin + (end - begin) * i / kSteps;  // h = x²
           const double weight = i == 0 || i == kSteps ? 1 : 2 + 2 * (i % 2);
-          sum += weight * (end - begin) / (3 * kSteps) * 8 * kPi * x *
+          sum += weight * (end - begin) / (3 * kSteps) * 8 * std::numbers::pi * x *
                  draine_reference(g, alpha, 1 - 2 * x * x);
         }
         begin = end;
@@ -429,7 +428,7 @@ TEST(Droplets, AreProperForEveryDiameter) {
 // --- Values out of range. -----------------------------------------------------------------------
 
 template <class Make>
-std::string message(Make make) {
+std::string message_of(Make make) {
   try {
     make();
   } catch (const Error& error) {
@@ -439,21 +438,21 @@ std::string message(Make make) {
 }
 
 TEST(PhaseFunctions, RefuseParametersOutOfRange) {
-  EXPECT_EQ(message([] { PhaseFunction::henyey_greenstein(1); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::henyey_greenstein(1); }),
             "henyey-greenstein: g must lie between -1 and 1, and is 1");
-  EXPECT_EQ(message([] { PhaseFunction::henyey_greenstein(std::nanf("")); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::henyey_greenstein(std::nanf("")); }),
             "henyey-greenstein: g must lie between -1 and 1, and is nan");
-  EXPECT_EQ(message([] { PhaseFunction::draine(-1, 0); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::draine(-1, 0); }),
             "draine: g must lie between -1 and 1, and is -1");
-  EXPECT_EQ(message([] { PhaseFunction::draine(0, -0.5F); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::draine(0, -0.5F); }),
             "draine: alpha must be 0 or more, and is -0.5");
-  EXPECT_EQ(message([] { PhaseFunction::droplets(0); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::droplets(0); }),
             "droplets: the diameter must be above 0 and at most 50 micrometres, and is 0");
-  EXPECT_EQ(message([] { PhaseFunction::droplets(50.5F); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::droplets(50.5F); }),
             "droplets: the diameter must be above 0 and at most 50 micrometres, and is 50.5");
-  EXPECT_EQ(message([] { PhaseFunction::mixture({}); }),
+  EXPECT_EQ(message_of([] { PhaseFunction::mixture({}); }),
             "a mixture of phase functions: the weights must sum to 1, and sum to 0");
-  EXPECT_EQ(message([] {
+  EXPECT_EQ(message_of([] {
               PhaseFunction::mixture({{1.5F, {}}, {-0.5F, {}}});
             }),
             "a mixture of phase functions: the weight -0.5 is negative or not finite");

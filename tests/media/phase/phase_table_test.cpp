@@ -13,8 +13,6 @@
 namespace freepath {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 PhaseFunction read(const std::string& text) {
   std::istringstream input(text);
   return read_phase_table(input, "table.txt");
@@ -30,7 +28,7 @@ std::string message(const std::string& text) {
 }
 
 double at_angle(const PhaseFunction& function, double degrees) {
-  const double angle = degrees * kPi / 180;
+  const double angle = degrees * std::numbers::pi / 180;
   return function.evaluate(
       {0, 0, 1}, {static_cast<float>(std::sin(angle)), 0, static_cast<float>(std::cos(angle))});
 }
@@ -38,7 +36,7 @@ double at_angle(const PhaseFunction& function, double degrees) {
 TEST(PhaseTable, IsNormalisedWhateverItsScale) {
   for (const std::string scale : {"", "e-300", "e300"}) {
     const PhaseFunction function = read(fmt::format("0 4{0}\n180 4{0}\n", scale));
-    EXPECT_NEAR(at_angle(function, 70), 1 / (4 * kPi), 1e-7) << scale;
+    EXPECT_NEAR(at_angle(function, 70), 1 / (4 * std::numbers::pi), 1e-7) << scale;
     EXPECT_NEAR(function.mean_cosine(), 0, 1e-7) << scale;
   }
 }
@@ -47,7 +45,8 @@ TEST(PhaseTable, IsNormalisedWhateverItsScale) {
 TEST(PhaseTable, IsLinearInTheCosine) {
   const PhaseFunction function = read("0 2\n180 0\n");
   for (const double angle : {0.0, 10.0, 60.0, 90.0, 135.0, 180.0}) {
-    EXPECT_NEAR(at_angle(function, angle), (1 + std::cos(angle * kPi / 180)) / (4 * kPi), 1e-7);
+    EXPECT_NEAR(at_angle(function, angle),
+                (1 + std::cos(angle * std::numbers::pi / 180)) / (4 * std::numbers::pi), 1e-7);
   }
   EXPECT_NEAR(function.mean_cosine(), 1.0 / 3, 1e-6);
 }
@@ -64,7 +63,7 @@ TEST(PhaseTable, GoesThroughItsPoints) {
 
 TEST(PhaseTable, MayHaveCommentsBlankLinesAndWindowsLineEnds) {
   const PhaseFunction function = read("# water, 550 nm\r\n\r\n  0\t2 # forward\r\n180 0\r\n");
-  EXPECT_NEAR(at_angle(function, 90), 1 / (4 * kPi), 1e-7);
+  EXPECT_NEAR(at_angle(function, 90), 1 / (4 * std::numbers::pi), 1e-7);
 }
 
 TEST(PhaseTable, SaysWhatIsWrongAndWhere) {
