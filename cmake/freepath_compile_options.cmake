@@ -12,8 +12,7 @@ endif()
 # Collecting garbage below a gigabyte costs the compiler a tenth of its time.
 target_compile_options(freepath_options INTERFACE
                        $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
-# A program loads only the libraries that it calls: OpenImageIO alone brings 250 others, which take
-# longer to load than most tests to run.
+# A program loads only the libraries that it calls.
 target_link_options(freepath_options INTERFACE -Wl,--as-needed)
 if(FREEPATH_SANITIZE)
   target_compile_options(freepath_options INTERFACE -fsanitize=${FREEPATH_SANITIZE}

@@ -1,7 +1,6 @@
 # cmake --install: the library and its headers, found elsewhere by find_package(freepath CONFIG), and
 # the program.
 include(CMakePackageConfigHelpers)
-include(GNUInstallDirs)
 
 add_library(freepath_freepath INTERFACE)
 target_link_libraries(freepath_freepath INTERFACE freepath_transport freepath_io)
@@ -14,6 +13,7 @@ install(TARGETS ${freepath_installed} EXPORT freepath_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS freepath RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS freepath_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(room base media tracking transport io)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/freepath/${room}
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/freepath

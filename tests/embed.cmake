@@ -15,6 +15,11 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples/embed -B ${WORK}/embed -DCMAKE_BUILD_
     -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/embed)
 run(${WORK}/prefix/bin/freepath generate cloud -o ${WORK}/cloud.vdb --resolution 32)
+set(render ${WORK}/prefix/bin/freepath render ${WORK}/cloud.vdb --size 8x8 --spp 1 -o)
+run(${render} ${WORK}/cloud.exr)
+if(NOT EXISTS ${WORK}/cloud.exr)
+  message(FATAL_ERROR "the installed program wrote no picture")
+endif()
 run(${WORK}/embed/embed ${WORK}/cloud.vdb)
 message("${output}")
 # exp(-1.7642) = 0.1713 by both estimates; the standard errors are at most 0.0012
@@ -27,4 +32,11 @@ execute_process(COMMAND ${WORK}/embed/embed ${WORK}/damaged.vdb RESULT_VARIABLE 
                 ERROR_VARIABLE output)
 if(NOT result EQUAL 1 OR NOT output MATCHES "damaged.vdb")
   message(FATAL_ERROR "an empty file ended with ${result}: ${output}")
+endif()
+
+file(GLOB_RECURSE images ${WORK}/prefix/libfreepath_images.so)
+file(REMOVE ${images})
+execute_process(COMMAND ${render} ${WORK}/none.exr RESULT_VARIABLE result ERROR_VARIABLE output)
+if(NOT result EQUAL 1 OR NOT output MATCHES "can't load the library that reads and writes images")
+  message(FATAL_ERROR "without its library of images the program ended with ${result}: ${output}")
 endif()

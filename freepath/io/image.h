@@ -59,8 +59,8 @@ enum class ImageFormat { kExr, kPng };
 ImageFormat image_format(const std::string& path);
 
 /// Checks that an image could be written, before the time for rendering it is spent: the extension
-/// is known, the folder exists and can be written to, and what stands there already is a file that
-/// is not read-only.
+/// is known, the folder exists and can be written to, what stands there already is a file that is
+/// not read-only, and the library of image formats is there.
 /// @throws Error that names the file and what to do
 void check_writable(const std::string& path);
 

@@ -1,7 +1,6 @@
 #include "tests/report/browser.h"
 
-#include <OpenImageIO/imageio.h>
-
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -10,6 +9,8 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+
+#include "freepath/io/image_codec.h"
 
 namespace freepath::testing {
 
@@ -92,12 +93,18 @@ Screenshot Browser::screenshot(const std::string& address, int width, int height
   run(address,
       fmt::format("--screenshot={} --window-size={},{} {}", quoted(file), width, height, options),
       folder_ / "output");
-  const auto input = OIIO::ImageInput::open(file.string());
-  if (!input) throw std::runtime_error("there is no screenshot: " + OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  Screenshot result{spec.width, spec.height};
-  result.pixels.resize(static_cast<std::size_t>(spec.width) * spec.height * 3);
-  input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, result.pixels.data());
+  Image image;
+  bool srgb = false;
+  int alpha = -1;
+  const std::string reason = image_codec().read(file.string(), image, srgb, alpha);
+  if (!reason.empty()) throw std::runtime_error("there is no screenshot: " + reason);
+  Screenshot result{image.width, image.height};
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    const float* const pixel = image.values.data() + i * image.channels.size();
+    for (int c = 0; c < 3; ++c) {
+      result.pixels.push_back(static_cast<uint8_t>(std::lround(255.0F * pixel[c])));
+    }
+  }
   return result;
 }
 

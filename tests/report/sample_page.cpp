@@ -1,16 +1,15 @@
 #include "tests/report/sample_page.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "freepath/base/random.h"
+#include "freepath/io/image_codec.h"
 
 namespace freepath::testing {
 
@@ -164,12 +163,9 @@ Chart sample_histogram() {
 }  // namespace
 
 PngBytes encode_png(int width, int height, const std::vector<uint8_t>& pixels) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput file(bytes);
-  const auto output = OIIO::ImageOutput::create("sample.png", &file);
-  output->open("sample.png", OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8));
-  output->write_image(OIIO::TypeDesc::UINT8, pixels.data());
-  output->close();
+  PngBytes bytes;
+  const std::string reason = image_codec().encode_png(width, height, pixels.data(), bytes);
+  if (!reason.empty()) throw std::runtime_error(reason);
   return bytes;
 }
 

@@ -1,0 +1,41 @@
+#pragma once
+/// @file Image formats, by OpenImageIO, in a library of their own: it brings 250 others, which take
+/// longer to load than most runs of the program take, and is loaded when the first image is read or
+/// written.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "freepath/io/image.h"
+
+namespace freepath {
+
+/// What the library of image formats does. Each call returns the reason why it could not; empty: it
+/// is done.
+struct ImageCodec {
+  /// The version of freepath that it was built with.
+  const char* version;
+  /// Reads the first part of a file, as it is stored.
+  /// @param srgb set where the values are of the sRGB transfer function
+  /// @param alpha number of the channel that holds no colour; -1: none
+  std::string (*read)(const std::string& path, Image& image, bool& srgb, int& alpha);
+  /// Writes an EXR file.
+  /// @param values those to store instead of the image's own
+  std::string (*write_exr)(const std::string& path, const Image& image, const float* values,
+                           ExrPrecision precision);
+  /// The bytes of a PNG file of sRGB pixels.
+  /// @param rgb 3 · width · height values
+  std::string (*encode_png)(int width, int height, const uint8_t* rgb,
+                            std::vector<uint8_t>& encoded);
+};
+
+/// The function that the library exports, ImageCodecFunction.
+inline constexpr const char* kImageCodecFunction = "freepath_image_codec";
+using ImageCodecFunction = const ImageCodec* (*)();
+
+/// The library, loaded by the first call; from any thread.
+/// @throws Error that says what to do, if it is missing or of another version
+const ImageCodec& image_codec();
+
+}  // namespace freepath

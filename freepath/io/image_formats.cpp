@@ -1,0 +1,130 @@
+// Image formats, by OpenImageIO: the whole of the library that image_codec.h loads.
+
+#include "freepath/io/image_codec.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cctype>
+#include <limits>
+#include <memory>
+
+#include "freepath/base/version.h"
+
+namespace freepath {
+namespace {
+
+/// OpenImageIO's message, without a line break at its end.
+std::string trimmed(std::string message) {
+  while (!message.empty() && std::isspace(static_cast<unsigned char>(message.back()))) {
+    message.pop_back();
+  }
+  return message.empty() ? "unknown reason" : message;
+}
+
+std::vector<std::pair<std::string, MetadataValue>> metadata_of(const OIIO::ImageSpec& spec) {
+  std::vector<std::pair<std::string, MetadataValue>> metadata;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string name = value.name().string();
+    if (value.type() == OIIO::TypeString) {
+      metadata.emplace_back(name, value.get_string());
+    } else if (value.type() == OIIO::TypeInt) {
+      metadata.emplace_back(name, int64_t{value.get_int()});
+    } else if (value.type() == OIIO::TypeFloat) {
+      metadata.emplace_back(name, double{value.get_float()});
+    } else if (value.type() == OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE)) {
+      metadata.emplace_back(name, *static_cast<const double*>(value.data()));
+    }
+  }
+  return metadata;
+}
+
+void set_metadata(OIIO::ImageSpec& spec, const Image& image) {
+  for (const auto& [name, value] : image.metadata) {
+    if (const auto* text = std::get_if<std::string>(&value)) {
+      spec.attribute(name, *text);
+    } else if (const auto* real = std::get_if<double>(&value)) {
+      spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), real);
+    } else {
+      const int64_t integer = std::get<int64_t>(value);
+      if (integer >= std::numeric_limits<int>::min() &&
+          integer <= std::numeric_limits<int>::max()) {
+        spec.attribute(name, static_cast<int>(integer));
+      } else {
+        spec.attribute(name, std::to_string(integer));
+      }
+    }
+  }
+}
+
+/// Writes with OpenImageIO: into the file of that name, or into a buffer if there is one.
+/// @return the reason why it could not; empty: it is written
+std::string encode(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
+                   const OIIO::TypeDesc& type, const void* pixels,
+                   OIIO::Filesystem::IOProxy* buffer = nullptr) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  if (!output) return trimmed(OIIO::geterror());
+  if (buffer != nullptr && !output->set_ioproxy(buffer)) return trimmed(output->geterror());
+  if (!output->open(name, spec)) return trimmed(output->geterror());
+  const bool written = output->write_image(type, pixels);
+  const std::string reason = output->geterror();
+  if (output->close() && written) return {};
+  return trimmed(written ? output->geterror() : reason);
+}
+
+std::string read_stored(const std::string& path, Image& image, bool& srgb, int& alpha) {
+  OIIO::ImageSpec wish;
+  wish.attribute("oiio:UnassociatedAlpha", 1);
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wish);
+  if (!input) return "can't read the image: " + trimmed(OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.deep) return "a deep image; flatten it first";
+  if (spec.depth > 1) {
+    return "an image with " + std::to_string(spec.depth) + " slices; give one with a single one";
+  }
+  image.width = spec.width;
+  image.height = spec.height;
+  image.x = spec.x - spec.full_x;
+  image.y = spec.y - spec.full_y;
+  image.full_width = spec.full_width;
+  image.full_height = spec.full_height;
+  image.channels = spec.channelnames;
+  image.values.resize(image.pixel_count() * image.channels.size());
+  image.metadata = metadata_of(spec);
+  srgb = spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
+  alpha = spec.alpha_channel;
+  if (!input->read_image(0, 0, 0, -1, OIIO::TypeFloat, image.values.data())) {
+    return "can't read the image: " + trimmed(input->geterror());
+  }
+  return {};
+}
+
+std::string write_values(const std::string& path, const Image& image, const float* values,
+                      ExrPrecision precision) {
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()),
+                       precision == ExrPrecision::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat);
+  spec.channelnames = image.channels;
+  spec.x = image.x;
+  spec.y = image.y;
+  if (image.full_width > 0) spec.full_width = image.full_width;
+  if (image.full_height > 0) spec.full_height = image.full_height;
+  spec.attribute("compression", "zip");
+  set_metadata(spec, image);
+  return encode(path, "openexr", spec, OIIO::TypeFloat, values);
+}
+
+std::string encode_rgb(int width, int height, const uint8_t* rgb, std::vector<uint8_t>& encoded) {
+  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  OIIO::Filesystem::IOVecOutput buffer(encoded);
+  return encode("picture.png", "png", spec, OIIO::TypeUInt8, rgb, &buffer);
+}
+
+}  // namespace
+}  // namespace freepath
+
+extern "C" const freepath::ImageCodec* freepath_image_codec() {
+  static const freepath::ImageCodec kCodec{freepath::version(), freepath::read_stored,
+                                               freepath::write_values, freepath::encode_rgb};
+  return &kCodec;
+}
