@@ -64,7 +64,7 @@ struct CompareOptions {
   bool check = false;
 };
 
-std::string now_text() {
+std::string date_text() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   gmtime_r(&now, &utc);
@@ -229,7 +229,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
   const ReportContext context{.subject = loaded.subject.name,
                               .command = command_line(),
                               .machine = machine_text(settings.render),
-                              .date = now_text(),
+                              .date = date_text(),
                               .exposure = options.exposure};
   write_report(comparison, context, folder);
   print_table(comparison);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -78,17 +77,6 @@ std::vector<std::string> read_trackers(const std::string& text) {
   });
 }
 
-uint64_t read_paths(const std::string& text) {
-  constexpr double kFewest = 1000;
-  constexpr double kMost = 1e12;
-  const std::vector<double> numbers = parse_numbers(text, "--paths");
-  if (numbers.size() != 1 || numbers[0] < kFewest || numbers[0] > kMost ||
-      numbers[0] != std::floor(numbers[0])) {
-    fail("--paths: '{}' is not a whole number from {} to {}", text, kFewest, kMost);
-  }
-  return static_cast<uint64_t>(numbers[0]);
-}
-
 LabOptions read_options(const LabCommandOptions& options) {
   constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
                                     Choice<Absorption>{"weighted", Absorption::kWeighted}};
@@ -100,7 +88,7 @@ LabOptions read_options(const LabCommandOptions& options) {
     lab.settings.push_back(setting);
   }
   lab.trackers = read_trackers(options.trackers);
-  lab.paths = read_paths(options.paths);
+  lab.paths = parse_count(options.paths, "--paths", 1000, 1e12);
   lab.seed = options.seed;
   lab.threads = options.threads;
   lab.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);

@@ -31,6 +31,15 @@ std::string refuse_non_whole(const std::string& text) {
 
 }  // namespace
 
+uint64_t parse_count(std::string_view text, std::string_view option, double least, double most) {
+  const std::vector<double> numbers = parse_numbers(text, option);
+  if (numbers.size() != 1 || numbers[0] < least || numbers[0] > most ||
+      numbers[0] != std::floor(numbers[0])) {
+    fail("{}: '{}' is not a whole number from {} to {}", option, text, least, most);
+  }
+  return static_cast<uint64_t>(numbers[0]);
+}
+
 const CLI::Validator kFiniteNumber(refuse_non_finite, "");
 const CLI::Validator kWholeNumber(refuse_non_whole, "");
 

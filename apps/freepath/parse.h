@@ -2,6 +2,7 @@
 /// @file Values of options: numbers, lists, sizes, choices. Each error names the option.
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,10 @@ namespace freepath::program {
 
 /// "1,2.5,3" as numbers. @throws Error naming the option, for what is not a finite number
 std::vector<double> parse_numbers(std::string_view text, std::string_view option);
+
+/// A whole number from `least` to `most`, which may be written 1e6; a double counts all up to 2^53.
+/// @throws Error naming the option and the range
+uint64_t parse_count(std::string_view text, std::string_view option, double least, double most);
 
 /// Checks that an option's value is a finite number: C's notion of numbers has nan and inf too.
 extern const CLI::Validator kFiniteNumber;

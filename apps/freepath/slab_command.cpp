@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -94,23 +93,13 @@ std::vector<SlabLayer> read_layers(const SlabOptions& options) {
   return layers;
 }
 
-uint64_t read_paths(const std::string& text) {
-  constexpr double kMost = 1e15;  // a double counts them all
-  const std::vector<double> numbers = parse_numbers(text, "--paths");
-  if (numbers.size() != 1 || numbers[0] < 1 || numbers[0] > kMost ||
-      numbers[0] != std::floor(numbers[0])) {
-    fail("--paths: '{}' is not a whole number from 1 to {}", text, kMost);
-  }
-  return static_cast<uint64_t>(numbers[0]);
-}
-
 SlabSettings read_settings(const SlabOptions& options) {
   constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
                                     Choice<Absorption>{"weighted", Absorption::kWeighted}};
   SlabSettings settings;
   settings.mu0 = options.mu0;
   settings.diffuse = options.diffuse;
-  settings.paths = read_paths(options.paths);
+  settings.paths = parse_count(options.paths, "--paths", 1, 1e15);
   settings.threads = options.threads;
   settings.batch = options.batch;
   settings.super_voxel = options.super_voxel;

@@ -49,12 +49,12 @@ struct Tally {
 };
 
 /// Of all channels that paths carry together.
-struct Sums {
+struct ChannelTallies {
   std::array<Tally, kMaxChannels> channels;
   WalkStatistics statistics;
   double seconds = 0;
 
-  void merge(const Sums& other) {
+  void merge(const ChannelTallies& other) {
     for (int i = 0; i < kMaxChannels; ++i) channels[i].merge(other.channels[i]);
     statistics.merge(other.statistics);
     seconds += other.seconds;
@@ -73,13 +73,13 @@ class Measurement {
       : setting_(setting), walk_(walk), goes_on_(goes_on) {}
 
   /// @param turn the one channel to carry, or Walker::kAllChannels
-  Sums walk(int turn, uint64_t paths) {
+  ChannelTallies walk(int turn, uint64_t paths) {
     const Walker walker(*setting_.medium, walk_, turn);
     const uint64_t chunks = (paths + kPathsPerChunk - 1) / kPathsPerChunk;
-    Sums total;
+    ChannelTallies total;
     for (uint64_t begin = 0; begin < chunks; begin += kChunksPerPass) {
       if (goes_on_ && !goes_on_()) fail("interrupted");
-      std::vector<Sums> sums(std::min(kChunksPerPass, chunks - begin));
+      std::vector<ChannelTallies> sums(std::min(kChunksPerPass, chunks - begin));
       tbb::parallel_for(tbb::blocked_range<uint64_t>(0, sums.size(), 1), [&](const auto& range) {
         for (uint64_t i = range.begin(); i < range.end(); ++i) {
           const uint64_t first = (begin + i) * kPathsPerChunk;
@@ -87,14 +87,14 @@ class Measurement {
                      sums[i]);
         }
       });
-      for (const Sums& each : sums) total.merge(each);
+      for (const ChannelTallies& each : sums) total.merge(each);
     }
     return total;
   }
 
  private:
   void walk_chunk(const Walker& walker, int first_channel, uint64_t first, uint64_t count,
-                  Sums& sums) {
+                  ChannelTallies& sums) {
     Workspace& space = workspaces_.local();
     set_lab_rays(first, count, space.rays);
     const auto start = std::chrono::steady_clock::now();
@@ -214,7 +214,8 @@ LabMeasurement measure_tracker(const LabSetting& setting, const LabCurves& curve
   double seconds = 0;
   const int turns = result.shared ? 1 : setting.channels;
   for (int turn = 0; turn < turns; ++turn) {
-    const Sums sums = measurement.walk(result.shared ? Walker::kAllChannels : turn, walk.paths);
+    const ChannelTallies sums =
+        measurement.walk(result.shared ? Walker::kAllChannels : turn, walk.paths);
     statistics.merge(sums.statistics);
     seconds += sums.seconds;
     const int channels = result.shared ? setting.channels : 1;

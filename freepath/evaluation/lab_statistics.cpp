@@ -16,7 +16,7 @@ constexpr double kFewExpected = 100;
 constexpr double kLargestSkewness = 0.05;
 constexpr double kLargestExcess = 0.01;
 /// Single precision, relative to what is expected: some hundred terms of a sum.
-constexpr double kRounding = 2e-5;
+constexpr double kWeightRounding = 2e-5;
 /// Bins of the test of a distribution, at most.
 constexpr double kTestBins = 32;
 /// What a bin of it expects at least, in weights of 1, and the contributions that it needs.
@@ -106,7 +106,7 @@ LabCheck check_mean(const LabMoments& moments, uint64_t paths, double exact) {
     check.p = 0;
     return check;
   }
-  const double beyond = std::max(0.0, std::abs(off) - kRounding * std::abs(exact));
+  const double beyond = std::max(0.0, std::abs(off) - kWeightRounding * std::abs(exact));
   const double z = beyond == 0 ? 0 : beyond / check.standard_error;
   check.z = std::copysign(std::min(z, kFar), off);
   check.p = normal_two_sided_p(check.z);

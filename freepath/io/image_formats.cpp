@@ -100,7 +100,7 @@ std::string read_stored(const std::string& path, Image& image, bool& srgb, int& 
 }
 
 std::string write_values(const std::string& path, const Image& image, const float* values,
-                      ExrPrecision precision) {
+                         ExrPrecision precision) {
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()),
                        precision == ExrPrecision::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat);
   spec.channelnames = image.channels;
@@ -125,6 +125,6 @@ std::string encode_rgb(int width, int height, const uint8_t* rgb, std::vector<ui
 
 extern "C" const freepath::ImageCodec* freepath_image_codec() {
   static const freepath::ImageCodec kCodec{freepath::version(), freepath::read_stored,
-                                               freepath::write_values, freepath::encode_rgb};
+                                           freepath::write_values, freepath::encode_rgb};
   return &kCodec;
 }

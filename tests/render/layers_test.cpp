@@ -40,7 +40,7 @@ Camera camera_at(const Vec3d& from) {
 
 Lights environment() { return Lights(ConstantEnvironment(Spectrum(0.5F, 1.0F, 1.5F))); }
 
-RenderSettings settings_of(uint32_t samples) {
+RenderSettings sampled(uint32_t samples) {
   RenderSettings settings;
   settings.samples = samples;
   settings.layers = LayerSet::all();
@@ -73,7 +73,7 @@ TEST(Layers, PartsOfTheLightAddUpForEveryKindOfPath) {
   for (const char* tracker : {"delta", "weighted-delta:rate-scale=0.8", "spectral"}) {
     for (const Spectrum& sigma_s : {Spectrum(1.5F), Spectrum(1.5F, 0.7F, 0.2F)}) {
       for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
-        RenderSettings settings = settings_of(7);
+        RenderSettings settings = sampled(7);
         settings.walk.tracker = tracker;
         settings.walk.absorption = absorption;
         const Medium medium = glowing_cube(sigma_s);
@@ -87,7 +87,7 @@ TEST(Layers, PartsOfTheLightAddUpForEveryKindOfPath) {
 
 TEST(Layers, PartsAreThePicturesOfPathsThatEndThere) {
   const Medium medium = glowing_cube(Spectrum(1.5F));
-  RenderSettings settings = settings_of(5);
+  RenderSettings settings = sampled(5);
   const auto picture = [&](uint32_t max_scatterings) {
     settings.max_scatterings = max_scatterings;
     return render(medium, camera_at({0, 0, 6}), environment(), settings).film.to_image();
@@ -114,7 +114,7 @@ TEST(Layers, OfTheMiddleOfACubeAreThoseOfTheClosedForm) {
   for (const char* tracker : {"delta", "spectral"}) {
     const Spectrum sigma_s(1.2F, 0.6F, 0.2F);
     const Medium medium = glowing_cube(sigma_s);
-    RenderSettings settings = settings_of(20'000);
+    RenderSettings settings = sampled(20'000);
     settings.crop = Crop{6, 4, 7, 5};
     settings.walk.tracker = tracker;
     const Camera camera({Vec3d(0, 0, 60), Vec3d(0), Vec3d(0, 1, 0), 0.5}, kWidth, kHeight);
@@ -141,7 +141,7 @@ TEST(Layers, OfTheMiddleOfACubeAreThoseOfTheClosedForm) {
 
 TEST(Layers, ChangeNothingOfThePicture) {
   const Medium medium = glowing_cube(Spectrum(1.5F, 0.7F, 0.2F));
-  RenderSettings settings = settings_of(3);
+  RenderSettings settings = sampled(3);
   const Film with = render(medium, camera_at({0, 0, 6}), environment(), settings).film;
   settings.layers = {};
   const Film without = render(medium, camera_at({0, 0, 6}), environment(), settings).film;
@@ -151,7 +151,7 @@ TEST(Layers, ChangeNothingOfThePicture) {
 
 TEST(Crop, IsBitForBitThePartOfThePicture) {
   const Medium medium = glowing_cube(Spectrum(1.5F, 0.7F, 0.2F));
-  RenderSettings settings = settings_of(3);
+  RenderSettings settings = sampled(3);
   const Image whole = render(medium, camera_at({1, 2, 6}), environment(), settings).film.to_image();
   for (const Crop& crop : {Crop{3, 2, 10, 7}, Crop{0.25, 0.25, 0.8, 0.875, true}}) {
     settings.crop = crop;
@@ -186,7 +186,7 @@ TEST(Crop, IsWithinThePictureAndHasPixels) {
 
 TEST(OnPass, SeesTheFilmGrow) {
   const Medium medium = glowing_cube(Spectrum(1.5F));
-  RenderSettings settings = settings_of(9);
+  RenderSettings settings = sampled(9);
   std::vector<uint32_t> samples;
   settings.on_pass = [&](const Film& film) { samples.push_back(film.sample_counts().fewest); };
   render(medium, camera_at({0, 0, 6}), environment(), settings);

@@ -17,12 +17,8 @@
 namespace freepath {
 namespace {
 
+using testing::spectra;
 using testing::TestSpectra;
-
-const TestSpectra& spectra() {
-  static const TestSpectra kSpectra;
-  return kSpectra;
-}
 
 double luminance_of_channels(const Channels& c, const SpectrumValues& values) {
   return luminance_weights(spectra().table.space()).dot(Vec3d(values.to_rgb(c)));

@@ -132,12 +132,12 @@ void expect_estimates_integral(const std::string& name, const Lights& lights) {
   EXPECT_TRUE(testing::check_mean(name, estimates, expected, {.absolute = 1e-4 * expected}));
 }
 
-struct Case {
+struct SamplingCase {
   std::string name;
   Lights lights;
 };
 
-std::vector<Case> all_lights() {
+std::vector<SamplingCase> all_lights() {
   const Sun sun({.elevation = 30, .azimuth = 200}, UpAxis::kY);
   const ImageEnvironment rough(rough_image(), UpAxis::kY, "rough");
   const ImageEnvironment black(grey_image(8, 4, [](int, int) { return 0.0F; }), UpAxis::kY, "b");
@@ -155,15 +155,15 @@ std::vector<Case> all_lights() {
 }
 
 TEST(Lights, SamplesFollowADensityThatIntegratesToOne) {
-  for (const Case& c : all_lights()) expect_samples_follow_pdf(c.name, c.lights);
+  for (const SamplingCase& c : all_lights()) expect_samples_follow_pdf(c.name, c.lights);
 }
 
 TEST(Lights, SamplesEstimateTheIntegralOfTheLight) {
-  for (const Case& c : all_lights()) expect_estimates_integral(c.name, c.lights);
+  for (const SamplingCase& c : all_lights()) expect_estimates_integral(c.name, c.lights);
 }
 
 TEST(Lights, ASampleCarriesWhatEvaluationGives) {
-  for (const Case& c : all_lights()) {
+  for (const SamplingCase& c : all_lights()) {
     RandomStream random(31, 32, 33, 34);
     for (int i = 0; i < 20'000; ++i) {
       const float u0 = random.uniform();
@@ -179,7 +179,7 @@ TEST(Lights, ASampleCarriesWhatEvaluationGives) {
 
 TEST(Lights, ExtremesOfTheUniformNumbersAreDirections) {
   constexpr float kLast = 1.0F - 0x1p-24F;
-  for (const Case& c : all_lights()) {
+  for (const SamplingCase& c : all_lights()) {
     for (const float u0 : {0.0F, kLast}) {
       for (const float u1 : {0.0F, kLast}) {
         for (const float u2 : {0.0F, kLast}) {

@@ -12,8 +12,8 @@
 namespace freepath::testing {
 namespace {
 
-constexpr int kWidth = 16;
-constexpr int kHeight = 8;
+constexpr int kColumns = 16;
+constexpr int kRows = 8;
 
 /// Everything that a path needs, in one place.
 struct Stage {
@@ -22,7 +22,7 @@ struct Stage {
                           .sigma_a = Spectrum(0.01F),
                           .sigma_s = sigma_s,
                           .phase = {}}}),
-        camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kWidth, kHeight),
+        camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kColumns, kRows),
         lights(ConstantEnvironment(Spectrum(1.0F))) {
     setup.medium = &medium;
     setup.camera = &camera;
@@ -58,7 +58,7 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
   // One path for all channels, and one for each.
   for (const Spectrum& sigma_s : {Spectrum(0.5F), Spectrum(0.5F, 0.2F, 0.1F)}) {
     Stage stage(sigma_s);
-    Film whole(kWidth, kHeight);
+    Film whole(kColumns, kRows);
     PathWavefront undisturbed(stage.setup);
     uint64_t questions = 0;
     ASSERT_TRUE(undisturbed.trace(kJob, whole, [&] { return ++questions, false; }));
@@ -66,7 +66,7 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
 
     PathWavefront wavefront(stage.setup);
     for (uint64_t allowed = 0; allowed < questions; ++allowed) {
-      Film film(kWidth, kHeight);
+      Film film(kColumns, kRows);
       uint64_t left = allowed;
       EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return left-- == 0; })) << allowed;
       EXPECT_EQ(film.sample_counts().most, 0U);
@@ -74,7 +74,7 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
     expect_same(wavefront.counts(), {});
 
     // And what was stopped is no burden to what follows.
-    Film film(kWidth, kHeight);
+    Film film(kColumns, kRows);
     EXPECT_TRUE(wavefront.trace(kJob, film));
     EXPECT_EQ(film.to_image().values, whole.to_image().values);
     expect_same(wavefront.counts(), undisturbed.counts());
@@ -84,14 +84,14 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
 TEST(PathWavefront, CountsThePathsOfFinishedJobs) {
   Stage stage(Spectrum(0.5F));
   PathWavefront wavefront(stage.setup);
-  Film film(kWidth, kHeight);
+  Film film(kColumns, kRows);
   EXPECT_TRUE(wavefront.trace(kJob, film));
   EXPECT_EQ(wavefront.counts().paths, kJob.pixels * kJob.samples);
   EXPECT_TRUE(wavefront.trace({.first_pixel = 0, .pixels = 5, .samples = 1}, film));
   EXPECT_EQ(wavefront.counts().paths, kJob.pixels * kJob.samples + 5);
   EXPECT_EQ(film.sample_counts().most, 3U);
   EXPECT_EQ(film.sample_counts().fewest, 0U);
-  EXPECT_EQ(film.sample_counts().pixels_without, kWidth * kHeight - 5 - kJob.pixels);
+  EXPECT_EQ(film.sample_counts().pixels_without, kColumns * kRows - 5 - kJob.pixels);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using testing::check_mean;
 using testing::family_wise_threshold;
 using testing::RunningStatistics;
 
-struct Case {
+struct FilterCase {
   std::string name;
   FilterModel model;
   bool is_positive;
@@ -29,7 +29,7 @@ struct Case {
 
 /// All filters with the defaults, and with parameters that put zeros and edges off the tables'
 /// nodes.
-std::vector<Case> cases() {
+std::vector<FilterCase> cases() {
   return {{"box", BoxFilter{}, true},
           {"box 1.3 x 0.4", BoxFilter{1.3, 0.4}, true},
           {"gaussian", GaussianFilter{}, true},
@@ -90,7 +90,7 @@ TEST(PixelFilter, HasTheShapesOfTheSceneLanguage) {
 }
 
 TEST(PixelFilter, IntegratesToOneWithinItsRadii) {
-  for (const Case& test : cases()) {
+  for (const FilterCase& test : cases()) {
     SCOPED_TRACE(test.name);
     const PixelFilter filter(test.model);
     const double rx = filter.x_radius();
@@ -107,7 +107,7 @@ TEST(PixelFilter, IntegratesToOneWithinItsRadii) {
 TEST(PixelFilter, SamplesReproduceTheFilter) {
   constexpr int kSamples = 500'000;
   constexpr int kSide = 12;
-  for (const Case& test : cases()) {
+  for (const FilterCase& test : cases()) {
     SCOPED_TRACE(test.name);
     const PixelFilter filter(test.model);
     const double rx = filter.x_radius();
@@ -171,7 +171,7 @@ TEST(PixelFilter, SamplesReproduceTheFilter) {
 }
 
 TEST(PixelFilter, SamplesNextToProportionallyToTheFilter) {
-  for (const Case& test : cases()) {
+  for (const FilterCase& test : cases()) {
     SCOPED_TRACE(test.name);
     const PixelFilter filter(test.model);
     const double rx = filter.x_radius();
@@ -208,7 +208,7 @@ TEST(PixelFilter, SamplesNextToProportionallyToTheFilter) {
 }
 
 TEST(PixelFilter, KeepsTheOrderOfTheNumbers) {
-  for (const Case& test : cases()) {
+  for (const FilterCase& test : cases()) {
     SCOPED_TRACE(test.name);
     const PixelFilter filter(test.model);
     FilterSample last = filter.sample(0, 0);

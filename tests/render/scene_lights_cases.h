@@ -107,6 +107,11 @@ struct TestSpectra {
       table.add(SpectralDistribution(BlackbodySpectrum(3200)), SpectrumRole::kIlluminant);
 };
 
+inline const TestSpectra& spectra() {
+  static const TestSpectra kSpectra;
+  return kSpectra;
+}
+
 /// Adds a shape that shines.
 inline void add_emitter(LightsCase* scene, std::shared_ptr<const TestEmitter> emitter,
                         AreaEmission emission, bool reversed = false, bool invisible = false) {

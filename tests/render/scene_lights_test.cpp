@@ -21,13 +21,10 @@ namespace {
 
 using testing::LightsCase;
 using testing::SeenDelta;
+using testing::spectra;
 using testing::TestSpectra;
-const Vec3f kPosition(0.2F, -0.1F, 0.3F);
 
-const TestSpectra& spectra() {
-  static const TestSpectra kSpectra;
-  return kSpectra;
-}
+const Vec3f kPosition(0.2F, -0.1F, 0.3F);
 
 /// Lights without extent, and what a position sees of each.
 std::vector<LightsCase> delta_cases() {

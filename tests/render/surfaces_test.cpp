@@ -19,7 +19,7 @@ class EveryShape : public ::testing::TestWithParam<std::tuple<int, bool, bool>> 
   bool is_reversed() const { return std::get<2>(GetParam()); }
 };
 
-std::string name_of(const ::testing::TestParamInfo<std::tuple<int, bool, bool>>& info) {
+std::string shape_name(const ::testing::TestParamInfo<std::tuple<int, bool, bool>>& info) {
   static const char* const kNames[] = {"Sphere",   "PartialSphere", "Disk",  "Ring",
                                        "Cylinder", "PartialTube",   "Patch", "Triangle"};
   return std::string(kNames[std::get<0>(info.param)]) +
@@ -29,7 +29,7 @@ std::string name_of(const ::testing::TestParamInfo<std::tuple<int, bool, bool>>&
 INSTANTIATE_TEST_SUITE_P(Surfaces, EveryShape,
                          ::testing::Combine(::testing::Range(0, 8), ::testing::Bool(),
                                             ::testing::Bool()),
-                         name_of);
+                         shape_name);
 
 TEST_P(EveryShape, IsMetWhereItIsParameterisedWithTheDerivativeAndTheSideOfPbrt) {
   RandomSurfaces random(7 + std::get<0>(GetParam()));
