@@ -26,7 +26,7 @@ come before every pixel has its first sample, that is waited for only if it will
 (a second after Ctrl-C; as much time again and a second after --time): pixels without a sample are
 black with alpha 0, and counted in a warning, in --stats and in the .exr.
 
-Several volumes overlap as parts of one medium, each where its file puts it. RenderOptions of the medium
+Several volumes overlap as parts of one medium, each where its file puts it. Options of the medium
 are given once for all volumes, or once for each in the order of the files. Three grids, or a grid
 of vectors, are the densities of R, G and B. All trackers walk through such media but closed-form,
 which needs one homogeneous density.
