@@ -111,7 +111,10 @@ int compiled_channels(const WalkTable& walks, int channels) {
 const KernelTable& kernels(Simd simd) {
   static const std::array<KernelTable, std::size(kTargets)> kTables = [] {
     std::array<KernelTable, std::size(kTargets)> tables;
-    for (std::size_t i = 0; i < tables.size(); ++i) tables[i] = full_table(kTargets[i]);
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      // Making a table already takes the target's instructions.
+      if (runs_here(kTargets[i])) tables[i] = full_table(kTargets[i]);
+    }
     return tables;
   }();
   const Simd wanted = simd == Simd::kBest ? available_simd().front() : simd;
