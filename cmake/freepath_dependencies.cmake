@@ -1,6 +1,6 @@
 # Every library comes from Debian 12's packages (scripts/setup installs them).
 include(freepath_library_dependencies)
-find_package(spdlog REQUIRED)
+find_package(Boost REQUIRED)  # Math, headers alone
 find_package(embree 3 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -1,5 +1,6 @@
 # Installs the library, builds examples/embed against it outside of the build tree, and runs it.
-# Called by ctest with BUILD, SOURCE and WORK set.
+# Called by ctest with BUILD, SOURCE, WORK, GENERATOR and READELF set.
+include(${CMAKE_CURRENT_LIST_DIR}/run_paths_check.cmake)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output
                   ERROR_VARIABLE output)
@@ -11,9 +12,17 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE}/examples/embed -B ${WORK}/embed -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+file(GLOB_RECURSE installed ${WORK}/prefix/bin/* ${WORK}/prefix/*.so*)
+check_run_paths("$ORIGIN" ${installed})
+
+# The generator that built the library: no other need be installed.
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/examples/embed -B ${WORK}/embed
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+if(output MATCHES "Found|OpenVDB|COMPONENT")
+  message(FATAL_ERROR "find_package(freepath) prints:\n${output}")
+endif()
 run(${CMAKE_COMMAND} --build ${WORK}/embed)
+check_run_paths(${WORK}/prefix ${WORK}/embed/embed)
 run(${WORK}/prefix/bin/freepath generate cloud -o ${WORK}/cloud.vdb --resolution 32)
 set(render ${WORK}/prefix/bin/freepath render ${WORK}/cloud.vdb --size 8x8 --spp 1 -o)
 run(${render} ${WORK}/cloud.exr)

@@ -21,7 +21,7 @@ void* open_library() {
   std::error_code ignored;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   const std::filesystem::path beside =
-      program.parent_path().parent_path() / FREEPATH_LIBRARY_FOLDER / FREEPATH_IMAGE_LIBRARY;
+      program.parent_path() / FREEPATH_LIBRARY_FOLDER / FREEPATH_IMAGE_LIBRARY;
   if (void* const library = dlopen(beside.c_str(), RTLD_LAZY | RTLD_LOCAL)) return library;
   fail(
       "can't load the library that reads and writes images: {}. It is installed together with "

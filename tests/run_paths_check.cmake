@@ -1,0 +1,31 @@
+# Where the loader looks for the libraries of programs, as far as the files say it.
+
+# Fails unless all that the run paths of some programs and libraries name lies in a folder. An empty
+# entry and one that is relative stand for the current folder, whose code would run.
+function(check_run_paths folder)
+  if(NOT ARGN)
+    message(FATAL_ERROR "there are no files to look at")
+  endif()
+  foreach(file ${ARGN})
+    execute_process(COMMAND ${READELF} -d ${file} RESULT_VARIABLE result OUTPUT_VARIABLE dynamic
+                    ERROR_VARIABLE error)
+    if(NOT result EQUAL 0)
+      message(FATAL_ERROR "readelf ${file}: ${error}")
+    endif()
+    string(REGEX MATCHALL "\\((RPATH|RUNPATH)\\)[^\n]*" lines "${dynamic}")
+    foreach(line ${lines})
+      string(REGEX REPLACE ".*\\[(.*)\\].*" "\\1" path "${line}")
+      string(REPLACE ":" ";" entries "${path}")
+      string(FIND ":${path}:" "::" empty)
+      foreach(entry IN LISTS entries)
+        string(FIND "${entry}/" "${folder}/" place)
+        if(NOT place EQUAL 0)
+          message(FATAL_ERROR "${file}: the run path '${path}' leaves ${folder}")
+        endif()
+      endforeach()
+      if(NOT empty EQUAL -1)
+        message(FATAL_ERROR "${file}: the run path '${path}' has an empty entry, the current folder")
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
