@@ -1,11 +1,8 @@
-// Before OpenImageIO's headers, which bring an fmt of their own.
-#include "freepath/base/error.h"
-
 #include <OpenImageIO/hash.h>
 
 #include <array>
-#include <fstream>
 
+#include "freepath/base/input_file.h"
 #include "freepath/io/content_digest.h"
 
 namespace freepath {
@@ -15,14 +12,14 @@ void ContentDigest::add(std::string_view text) {
 }
 
 void ContentDigest::add_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  const InputFile file(path);
   OIIO::SHA1 digest;
-  std::array<char, 1 << 16> buffer;
-  while (file) {
-    file.read(buffer.data(), buffer.size());
-    digest.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  std::array<std::byte, 1 << 16> buffer;
+  uint64_t offset = 0;
+  while (const std::size_t count = file.read(offset, buffer)) {
+    digest.append(buffer.data(), count);
+    offset += count;
   }
-  if (!file.eof()) fail("{}: can't read the file", path);
   parts_ += digest.digest();
 }
 

@@ -16,10 +16,12 @@ namespace freepath {
 struct ImageCodec {
   /// The version of freepath that it was built with.
   const char* version;
-  /// Reads the first part of a file, as it is stored.
+  /// Reads the first part of a file, as it is stored; memory grows with what the file delivers.
+  /// @param stored size of the file [bytes]
   /// @param srgb set where the values are of the sRGB transfer function
   /// @param alpha number of the channel that holds no colour; -1: none
-  std::string (*read)(const std::string& path, Image& image, bool& srgb, int& alpha);
+  std::string (*read)(const std::string& path, uint64_t stored, Image& image, bool& srgb,
+                      int& alpha);
   /// Writes an EXR file.
   /// @param values those to store instead of the image's own
   std::string (*write_exr)(const std::string& path, const Image& image, const float* values,

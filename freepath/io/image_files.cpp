@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "freepath/base/error.h"
+#include "freepath/base/input_file.h"
 #include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
 #include "freepath/io/image_codec.h"
@@ -39,14 +40,11 @@ void linearise(Image& image, int alpha_channel) {
 }  // namespace
 
 Image read_image(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) fail("{}: no such file", path);
-  if (fs::is_directory(status)) fail("{}: is a folder, not an image", path);
+  const InputFile file(path, "an image");  // OpenImageIO would wait for a pipe
   Image image;
   bool srgb = false;
   int alpha = -1;
-  const std::string reason = image_codec().read(path, image, srgb, alpha);
+  const std::string reason = image_codec().read(path, file.size(), image, srgb, alpha);
   if (!reason.empty()) fail("{}: {}", path, reason);
   if (srgb) linearise(image, alpha);
   return image;

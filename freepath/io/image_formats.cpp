@@ -1,14 +1,19 @@
 // Image formats, by OpenImageIO: the whole of the library that image_codec.h loads.
 
+// Before OpenImageIO's headers, which bring an fmt of their own.
+#include "freepath/base/error.h"
+
 #include "freepath/io/image_codec.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cctype>
 #include <limits>
 #include <memory>
 
+#include "freepath/base/memory_budget.h"
 #include "freepath/base/version.h"
 
 namespace freepath {
@@ -72,7 +77,48 @@ std::string encode(const std::string& name, const char* format, const OIIO::Imag
   return trimmed(written ? output->geterror() : reason);
 }
 
-std::string read_stored(const std::string& path, Image& image, bool& srgb, int& alpha) {
+/// Why an image can't be what its header says; empty if it can.
+std::string reason_against_size(const OIIO::ImageSpec& spec, uint64_t stored) {
+  const double values = static_cast<double>(spec.nchannels) * spec.width * spec.height;
+  const int bits =
+      spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+  const std::string what = fmt::format("{}x{} pixels", spec.width, spec.height);
+  try {
+    check_declared("", what, values * bits / 8, stored);
+    check_memory_present("", what, values * sizeof(float));
+  } catch (const Error& error) {
+    return std::string(error.what()).substr(2);  // behind the name, which the caller says
+  }
+  return {};
+}
+
+/// Reads rows in chunks, so that a header alone takes no memory.
+bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, std::vector<float>& values) {
+  const std::size_t row = static_cast<std::size_t>(spec.width) * spec.nchannels;
+  values.reserve(row * spec.height);
+  constexpr std::size_t kChunk = std::size_t{1} << 20;  // values
+  // Formats pack rows together: tiles, or up to 256 rows.
+  const int together = spec.tile_width > 0 ? std::max(1, spec.tile_height) : 256;
+  int rows =
+      static_cast<int>(std::min<std::size_t>(spec.height, std::max<std::size_t>(1, kChunk / row)));
+  if (rows > together || spec.tile_width > 0) rows = std::max(together, rows / together * together);
+  for (int y = 0; y < spec.height; y += rows) {
+    const int end = std::min(spec.height, y + rows);
+    values.resize(row * end);
+    float* const target = values.data() + row * y;
+    const bool read =
+        spec.tile_width > 0
+            ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + y, spec.y + end, spec.z,
+                               spec.z + 1, 0, spec.nchannels, OIIO::TypeFloat, target)
+            : input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, spec.nchannels,
+                                   OIIO::TypeFloat, target);
+    if (!read) return false;
+  }
+  return true;
+}
+
+std::string read_stored(const std::string& path, uint64_t stored, Image& image, bool& srgb,
+                        int& alpha) {
   OIIO::ImageSpec wish;
   wish.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wish);
@@ -82,6 +128,8 @@ std::string read_stored(const std::string& path, Image& image, bool& srgb, int& 
   if (spec.depth > 1) {
     return "an image with " + std::to_string(spec.depth) + " slices; give one with a single one";
   }
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return "an image without pixels";
+  if (std::string reason = reason_against_size(spec, stored); !reason.empty()) return reason;
   image.width = spec.width;
   image.height = spec.height;
   image.x = spec.x - spec.full_x;
@@ -89,11 +137,10 @@ std::string read_stored(const std::string& path, Image& image, bool& srgb, int& 
   image.full_width = spec.full_width;
   image.full_height = spec.full_height;
   image.channels = spec.channelnames;
-  image.values.resize(image.pixel_count() * image.channels.size());
   image.metadata = metadata_of(spec);
   srgb = spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
   alpha = spec.alpha_channel;
-  if (!input->read_image(0, 0, 0, -1, OIIO::TypeFloat, image.values.data())) {
+  if (!read_rows(*input, spec, image.values)) {
     return "can't read the image: " + trimmed(input->geterror());
   }
   return {};

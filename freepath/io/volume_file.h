@@ -10,19 +10,18 @@
 #include <type_traits>
 #include <vector>
 
+#include "freepath/base/input_file.h"
+
 namespace freepath::io {
 
 /// An open file. Every error names it.
 class VolumeFile {
  public:
-  /// @throws Error if it doesn't exist, is a directory, is empty or can't be opened
+  /// @throws Error as InputFile, and if it is empty
   explicit VolumeFile(const std::filesystem::path& path);
-  ~VolumeFile();
-  VolumeFile(const VolumeFile&) = delete;
-  VolumeFile& operator=(const VolumeFile&) = delete;
 
-  const std::string& name() const { return name_; }
-  uint64_t size() const { return size_; }
+  const std::string& name() const { return file_.name(); }
+  uint64_t size() const { return file_.size(); }
 
   /// Fills `bytes` from `offset` on; may be called by several threads.
   /// @throws Error if the file ends before
@@ -35,9 +34,7 @@ class VolumeFile {
   [[noreturn]] void fail_damaged(const std::string& what) const;
 
  private:
-  std::string name_;
-  uint64_t size_ = 0;
-  int descriptor_ = -1;
+  InputFile file_;
 };
 
 /// Reads a file forward through a window of a megabyte, with every length checked.

@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "freepath/base/error.h"
+#include "freepath/io/invalid_values.h"
 
 namespace freepath {
 namespace {
@@ -165,7 +167,7 @@ TEST_F(ImageTest, TargetsThatCannotBeWrittenAreNamedBeforeRendering) {
 
 TEST_F(ImageTest, FilesThatCannotBeReadAreNamed) {
   expect_message([&] { read_image(path("none.exr")); }, "none.exr: no such file");
-  expect_message([&] { read_image(folder_); }, "is a folder");
+  expect_message([&] { read_image(folder_); }, "is a directory; name an image");
   std::ofstream(path("text.exr")) << "not an image";
   expect_message([&] { read_image(path("text.exr")); }, "text.exr: can't read");
   std::ofstream(path("empty.hdr")).close();
@@ -178,6 +180,49 @@ TEST_F(ImageTest, ATruncatedFileIsAnError) {
   write_exr(path("a.exr"), image);
   fs::resize_file(path("a.exr"), fs::file_size(path("a.exr")) / 2);
   expect_message([&] { read_image(path("a.exr")); }, "a.exr: can't read");
+}
+
+// A few bytes that would take 4.8 GB.
+TEST_F(ImageTest, AHeaderAloneCostsNothing) {
+  std::ofstream(path("a.hdr")) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 20000\n";
+  expect_message([&] { read_image(path("a.hdr")); },
+                 "a.hdr: it declares 20000x20000 pixels, but has only 53 bytes");
+  // Small enough to be a file of one value: refused once nothing comes.
+  std::ofstream(path("b.hdr")) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000 +X 2000\n";
+  expect_message([&] { read_image(path("b.hdr")); }, "b.hdr: can't read");
+}
+
+// A chunk of rows is 2^20 values at most; each has to arrive in its place.
+TEST_F(ImageTest, ManyRowsArriveInTheirPlaces) {
+  Image image{.width = 3000, .height = 700, .channels = {"Y"}};
+  image.values.resize(image.pixel_count());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    image.values[i] = static_cast<float>(i / 3000 * 1000 + i % 7);
+  }
+  write_exr(path("a.exr"), image);
+  EXPECT_EQ(read_image(path("a.exr")).values, image.values);
+}
+
+TEST_F(ImageTest, InvalidPixelsBecomeZeroOrAreRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Image image = numbered_image({"R", "G", "B", "depth"});
+  image.pixel(1, 0)[1] = nan;
+  image.pixel(2, 1)[0] = -std::numeric_limits<float>::infinity();
+  image.pixel(2, 1)[2] = nan;
+  image.pixel(0, 0)[3] = nan;  // no colour
+  Image mended = image;
+  EXPECT_EQ(
+      mend_invalid_pixels(mended, "a.exr", InvalidPolicy::kZero),
+      "a.exr: 2 pixels with values that are NaN or infinite were taken as 0; the first: pixel "
+      "(1, 0) is NaN");
+  EXPECT_EQ(mended.pixel(1, 0)[1], 0);
+  EXPECT_EQ(mended.pixel(2, 1)[0], 0);
+  EXPECT_EQ(mended.pixel(2, 1)[2], 0);
+  EXPECT_EQ(mended.pixel(2, 1)[1], image.pixel(2, 1)[1]);
+  EXPECT_TRUE(std::isnan(mended.pixel(0, 0)[3]));
+  expect_message([&] { mend_invalid_pixels(image, "a.exr", InvalidPolicy::kError); },
+                 "a.exr: pixel (1, 0) is NaN; repair the image, or have such values taken as 0");
+  EXPECT_EQ(mend_invalid_pixels(mended, "a.exr", InvalidPolicy::kError), "");
 }
 
 TEST_F(ImageTest, ColourIsFoundByNameAndNeverGuessed) {

@@ -6,14 +6,15 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
-#include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "freepath/base/error.h"
+#include "freepath/base/input_file.h"
 #include "freepath/base/nearest_name.h"
 
 namespace freepath {
@@ -81,10 +82,8 @@ using Folder = std::filesystem::path;
 PhaseFunction read_table_file(std::string_view file, const Folder& folder) {
   if (file.empty()) fail("tabulated: the name of a file is missing: tabulated:FILE");
   const std::filesystem::path path = folder / file;
-  std::error_code unused;
-  if (std::filesystem::is_directory(path, unused)) fail("{}: is a directory", path.string());
-  std::ifstream input(path);
-  if (!input) fail("{}: cannot be opened", path.string());
+  constexpr uint64_t kLargestTable = uint64_t{1} << 28;  // 10 million angles
+  std::istringstream input(read_input_file(path, "a table of a phase function", kLargestTable));
   return read_phase_table(input, path.string());
 }
 

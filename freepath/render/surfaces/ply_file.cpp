@@ -7,10 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "freepath/base/error.h"
+#include "freepath/base/input_file.h"
 #include "freepath/render/surfaces/ply_header.h"
 
 namespace freepath {
@@ -143,6 +142,7 @@ class DataParser {
 
  private:
   void skip(const PlyElement& element) {
+    if (element.properties.empty()) return;  // however many they are
     for (uint64_t i = 0; i < element.count; ++i) {
       for (const PlyProperty& property : element.properties) skip(property, element, i);
     }
@@ -259,11 +259,7 @@ PlyMesh parse_ply(std::string_view content, const std::string& name) {
 }
 
 PlyMesh read_ply(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail("{}: cannot open the file; is the name right, and may you read it?", file);
-  const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) fail("{}: cannot read the file; try again or copy it anew", file);
-  return parse_ply(content, file);
+  return parse_ply(read_input_file(file, "a PLY file"), file);
 }
 
 }  // namespace freepath

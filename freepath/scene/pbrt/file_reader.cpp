@@ -1,9 +1,10 @@
 #include "freepath/scene/pbrt/file_reader.h"
 
-#include <fstream>
+#include <string>
 #include <system_error>
 
 #include "freepath/base/error.h"
+#include "freepath/base/input_file.h"
 
 namespace freepath {
 
@@ -13,19 +14,13 @@ bool DiskFileReader::exists(const std::filesystem::path& path) const {
 }
 
 std::string DiskFileReader::read(const std::filesystem::path& path, std::size_t limit) const {
-  std::error_code trouble;
-  const std::filesystem::file_status status = std::filesystem::status(path, trouble);
-  if (!std::filesystem::exists(status)) fail("there is no such file");
-  // A directory, or a device or pipe that may never end.
-  if (!std::filesystem::is_regular_file(status)) fail("it is no regular file");
-  const std::uintmax_t size = std::filesystem::file_size(path, trouble);
-  if (trouble) fail("it cannot be read: {}", trouble.message());
-  if (size > limit) fail("it has {} bytes, more than the {} that are read", size, limit);
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(size));
-  if (!file) fail("it cannot be read; may you read it?");
-  return bytes;
+  try {
+    return read_input_file(path, "a scene file", limit);
+  } catch (const Error& error) {  // whose place and name are the caller's to say
+    const std::string text = error.what();
+    const std::string name = path.string() + ": ";
+    throw Error(text.starts_with(name) ? text.substr(name.size()) : text);
+  }
 }
 
 std::filesystem::path locate_file(const FileReader& reader, const std::filesystem::path& name,

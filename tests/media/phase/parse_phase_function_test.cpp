@@ -93,8 +93,9 @@ TEST(ParsePhaseFunction, SaysWhatIsWrong) {
   EXPECT_EQ(parse_message("henyey-greenstein:g=nan"),
             "henyey-greenstein: g must lie between -1 and 1, and is nan");
   EXPECT_EQ(parse_message("tabulated"), "tabulated: the name of a file is missing: tabulated:FILE");
-  EXPECT_EQ(parse_message("tabulated:no_such_file.txt"), "no_such_file.txt: cannot be opened");
-  EXPECT_EQ(parse_message("tabulated:/"), "/: is a directory");
+  EXPECT_EQ(parse_message("tabulated:no_such_file.txt"),
+            "no_such_file.txt: no such file; check the path");
+  EXPECT_EQ(parse_message("tabulated:/"), "/: is a directory; name a table of a phase function");
   EXPECT_EQ(parse_message("0.7*rayleigh+0.2*isotropic"),
             "a mixture of phase functions: the weights must sum to 1, and sum to 0.9");
   EXPECT_EQ(parse_message("1.5*rayleigh+-0.5*isotropic"),
