@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/method_list.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
@@ -107,26 +107,22 @@ std::vector<Configuration> read_configurations(const CompareOptions& options,
 /// A line of a name, a bar and the time left, on a terminal.
 class ComparisonBar {
  public:
-  ComparisonBar() : terminal_(isatty(STDERR_FILENO) != 0) {}
+  ComparisonBar() = default;
   ComparisonBar(const ComparisonBar&) = delete;
   ComparisonBar& operator=(const ComparisonBar&) = delete;
   /// Clears the line.
-  ~ComparisonBar() {
-    if (terminal_) fmt::print(stderr, "\r\x1b[K");
-  }
+  ~ComparisonBar() { clear_status(); }
   void show(const ComparisonProgress& progress) {
     constexpr double kSecondsBetween = 0.1;
-    if (!terminal_ || progress.seconds < next_) return;
+    if (progress.seconds < next_) return;
     next_ = progress.seconds + kSecondsBetween;
     const double left =
         progress.fraction > 0 ? progress.seconds * (1 - progress.fraction) / progress.fraction : 0;
-    fmt::print(stderr, "\r{:3.0f} %  {} left  {}\x1b[K", 100 * progress.fraction, clock_text(left),
-               progress.step);
-    std::fflush(stderr);
+    show_status(fmt::format("{:3.0f} %  {} left  {}", 100 * progress.fraction, clock_text(left),
+                            progress.step));
   }
 
  private:
-  bool terminal_;
   double next_ = 0;
 };
 
@@ -136,8 +132,8 @@ std::string_view verdict_text(BiasVerdict verdict) {
 
 void print_table(const Comparison& comparison) {
   constexpr const char* kRow = "{:<34}{:>11}{:>18}{:>11}{:>9}{:>9}{:>10}{:>10}  {}\n";
-  fmt::print(kRow, "method", "efficiency", "95 % of it", "MSE", "FLIP", "wall [s]", "look-ups",
-             "worst |z|", "bias test");
+  print(kRow, "method", "efficiency", "95 % of it", "MSE", "FLIP", "wall [s]", "look-ups",
+        "worst |z|", "bias test");
   for (const ConfigurationResult& result : comparison.configurations) {
     const auto figure = [&](std::string_view key) {
       for (const ComparisonFigure& candidate : comparison_figures()) {
@@ -150,11 +146,11 @@ void print_table(const Comparison& comparison) {
     if (efficiency && efficiency->low) {
       range = number_text(*efficiency->low, 3) + " to " + number_text(*efficiency->high, 3);
     }
-    fmt::print(kRow, result.name, efficiency ? number_text(efficiency->value, 3) : "-", range,
-               figure("mse"), figure("flip"), figure("seconds"), figure("lookups_per_path"),
-               number_text(result.bias.worst(), 3), verdict_text(result.verdict));
+    print(kRow, result.name, efficiency ? number_text(efficiency->value, 3) : "-", range,
+          figure("mse"), figure("flip"), figure("seconds"), figure("lookups_per_path"),
+          number_text(result.bias.worst(), 3), verdict_text(result.verdict));
   }
-  for (const std::string& finding : findings_of(comparison)) fmt::print("{}\n", finding);
+  for (const std::string& finding : findings_of(comparison)) print("{}\n", finding);
 }
 
 /// File names have neither colons nor blanks.
@@ -233,7 +229,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
                               .exposure = options.exposure};
   write_report(comparison, context, folder);
   print_table(comparison);
-  fmt::print("wrote {}\n", folder.file("report.html"));
+  print("wrote {}\n", folder.file("report.html"));
   if (!options.check) return;
   for (const ConfigurationResult& result : comparison.configurations) {
     if (!result.is_biased && result.verdict == BiasVerdict::kFails) throw CLI::RuntimeError(1);

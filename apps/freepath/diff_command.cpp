@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 
@@ -277,7 +277,7 @@ void print_json(const Difference& difference) {
     const std::size_t pixel = difference.non_finite[i];
     json["first_non_finite"].push_back({pixel % difference.width, pixel / difference.width});
   }
-  fmt::print("{}\n", json.dump());
+  print_json_text(json);
 }
 
 void print_table(const Difference& difference) {
@@ -285,37 +285,36 @@ void print_table(const Difference& difference) {
     return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
   };
   constexpr const char* kRow = "{:<12}{:>12}{:>12}{:>11}{:>12}{:>12}{:>12}{:>11}{:>10}\n";
-  fmt::print(kRow, "channel", "mean A", "mean B", "ratio", "MSE", "rel. MSE", "largest", "z",
-             "|z| > 3");
+  print(kRow, "channel", "mean A", "mean B", "ratio", "MSE", "rel. MSE", "largest", "z", "|z| > 3");
   for (const ChannelDifference& channel : difference.channels) {
     const auto& significance = channel.significance;
-    fmt::print(kRow, channel.name, number(channel.mean_a, 6), number(channel.mean_b, 6),
-               number(channel.mean_a / channel.mean_b, 6), number(channel.mse, 4),
-               number(channel.relative_mse, 4), number(channel.largest, 4),
-               significance ? number(significance->z, 3) : "-",
-               significance ? fmt::format("{:.2f}%", 100 * significance->z_above_3) : "-");
+    print(kRow, channel.name, number(channel.mean_a, 6), number(channel.mean_b, 6),
+          number(channel.mean_a / channel.mean_b, 6), number(channel.mse, 4),
+          number(channel.relative_mse, 4), number(channel.largest, 4),
+          significance ? number(significance->z, 3) : "-",
+          significance ? fmt::format("{:.2f}%", 100 * significance->z_above_3) : "-");
   }
   const ChannelDifference& worst = difference.worst();
-  fmt::print("all: MSE {:.6g}, relative MSE {:.6g}, largest difference {:.6g}", difference.mse(),
-             difference.relative_mse(), worst.largest);
+  print("all: MSE {:.6g}, relative MSE {:.6g}, largest difference {:.6g}", difference.mse(),
+        difference.relative_mse(), worst.largest);
   if (worst.largest > 0) {
-    fmt::print(" in {} at pixel {}", worst.name, difference.place(worst.largest_pixel));
+    print(" in {} at pixel {}", worst.name, difference.place(worst.largest_pixel));
   }
-  fmt::print("\n{} of {}x{} pixels compared\n", difference.compared(), difference.width,
-             difference.height);
+  print("\n{} of {}x{} pixels compared\n", difference.compared(), difference.width,
+        difference.height);
   if (difference.non_finite.empty()) return;
-  fmt::print("not finite, left out: {} pixels:", difference.non_finite.size());
+  print("not finite, left out: {} pixels:", difference.non_finite.size());
   for (std::size_t i = 0; i < std::min(kNamedPixels, difference.non_finite.size()); ++i) {
-    fmt::print(" {}", difference.place(difference.non_finite[i]));
+    print(" {}", difference.place(difference.non_finite[i]));
   }
-  fmt::print("{}\n", difference.non_finite.size() > kNamedPixels ? " ..." : "");
+  print("{}\n", difference.non_finite.size() > kNamedPixels ? " ..." : "");
 }
 
 /// Whether every limit holds; says on standard error which does not.
 bool within_limits(const DiffOptions& options, const Difference& difference) {
   bool within = true;
   const auto exceeded = [&](const std::string& what) {
-    fmt::print(stderr, "freepath: {}\n", what);
+    tell("freepath: {}\n", what);
     within = false;
   };
   if (options.max_relative_mse && !(difference.relative_mse() <= *options.max_relative_mse)) {

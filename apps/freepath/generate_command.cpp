@@ -1,15 +1,14 @@
 // freepath generate: procedural volumes, written to a file.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "freepath/base/error.h"
 #include "freepath/io/volume_write.h"
@@ -47,8 +46,7 @@ struct GenerateOptions {
 };
 
 void show_progress(double fraction) {
-  fmt::print(stderr, "\rsampling {:3.0f} %", 100 * fraction);
-  std::fflush(stderr);
+  show_status(fmt::format("sampling {:3.0f} %", 100 * fraction));
 }
 
 void run(GenerateOptions& options) {
@@ -57,10 +55,9 @@ void run(GenerateOptions& options) {
          options.output);
   }
   check_vdb_place(options.output);
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (terminal) options.volume.progress = show_progress;
+  options.volume.progress = show_progress;
   const std::vector<Field> fields = kGenerators.at(options.kind)(options.volume);
-  if (terminal) fmt::print(stderr, "\r              \r");
+  clear_status();
   std::vector<const Field*> pointers;
   pointers.reserve(fields.size());
   for (const Field& field : fields) pointers.push_back(&field);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "freepath/io/volume.h"
 #include "freepath/media/super_voxels.h"
 
@@ -170,9 +170,9 @@ Bricks bricks_of(const std::vector<LoadedField>& fields) {
 
 std::string grid_text(const Described& grid) {
   const GridInfo& info = grid.info;
-  std::string lines = fmt::format("grid {}: \"{}\"\n", info.index, info.name);
+  std::string lines = fmt::format("grid {}: \"{}\"\n", info.index, printable(info.name));
   const auto row = [&](const char* name, const std::string& text) {
-    lines += fmt::format("  {:<14} {}\n", name, text);
+    lines += fmt::format("  {:<14} {}\n", name, printable(text));
   };
   const Vec3d voxel = placement_of(info.index_to_world).voxel_size;
   row("type", fmt::format("{}, {}", info.type, info.grid_class));
@@ -297,12 +297,12 @@ void run(const InfoOptions& options) {
     nlohmann::json json{{"file", options.file}, {"grids", nlohmann::json::array()}};
     for_each_grid(options,
                   [&](const Described& grid) { json["grids"].push_back(grid_json(grid)); });
-    fmt::print("{}\n", json.dump(2));
+    print_json_text(json, 2);
     return;
   }
   std::string text;  // printed once there can't be an error any more
   for_each_grid(options, [&](const Described& grid) { text += grid_text(grid); });
-  fmt::print("{}", text);
+  print_lines(text);
 }
 
 }  // namespace

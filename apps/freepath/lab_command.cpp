@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/method_list.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
@@ -53,7 +53,7 @@ struct LabCommandOptions {
 
 void print_list() {
   for (const LabSettingInfo& info : lab_setting_infos()) {
-    fmt::print("{:<16}  {}\n", info.name, info.summary);
+    print("{:<16}  {}\n", info.name, info.summary);
   }
 }
 
@@ -101,17 +101,12 @@ class ProgressLine {
   void show(double share, std::string_view doing) {
     constexpr auto kBetween = std::chrono::milliseconds(100);
     const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ || now - shown_ < kBetween) return;
+    if (now - shown_ < kBetween) return;
     shown_ = now;
-    fmt::print(stderr, "\r{:3.0f} %  {}\x1b[K", 100 * share, doing);
-    std::fflush(stderr);
-  }
-  void finish() const {
-    if (terminal_) fmt::print(stderr, "\r\x1b[K");
+    show_status(fmt::format("{:3.0f} %  {}", 100 * share, doing));
   }
 
  private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
   std::chrono::steady_clock::time_point shown_;
 };
 
@@ -130,22 +125,22 @@ void print_row(const LabFindings& findings, const LabMeasurement& measurement, d
   std::string verdict(to_string(verdict_of(measurement, level)));
   if (measurement.biased) verdict += " (biased)";
   if (!measurement.refusal.empty()) {
-    fmt::print("{:<16} {:<48} {:>8} {:>9} {:>9} {:>10}  {}\n", findings.setting.name,
-               measurement.tracker, "-", "-", "-", "-", verdict);
+    print("{:<16} {:<48} {:>8} {:>9} {:>9} {:>10}  {}\n", findings.setting.name,
+          measurement.tracker, "-", "-", "-", "-", verdict);
     return;
   }
   const LabCheck* const transmittance = worst(measurement, &LabChannel::transmittance);
   const LabCheck* const free_path = worst(measurement, &LabChannel::free_path);
-  fmt::print("{:<16} {:<48} {:>8} {:>9} {:>9.3f} {:>10.4g}  {}\n", findings.setting.name,
-             measurement.tracker,
-             transmittance == nullptr ? "-" : fmt::format("{:+.2f}", transmittance->z),
-             free_path == nullptr ? "-" : fmt::format("{:.3g}", free_path->p), measurement.lookups,
-             measurement.variance, verdict);
+  print("{:<16} {:<48} {:>8} {:>9} {:>9.3f} {:>10.4g}  {}\n", findings.setting.name,
+        measurement.tracker,
+        transmittance == nullptr ? "-" : fmt::format("{:+.2f}", transmittance->z),
+        free_path == nullptr ? "-" : fmt::format("{:.3g}", free_path->p), measurement.lookups,
+        measurement.variance, verdict);
 }
 
 void print_table(const LabResult& result) {
-  fmt::print("{:<16} {:<48} {:>8} {:>9} {:>9} {:>10}  {}\n", "setting", "tracker", "z of T",
-             "p of path", "look-ups", "variance", "verdict");
+  print("{:<16} {:<48} {:>8} {:>9} {:>9} {:>10}  {}\n", "setting", "tracker", "z of T", "p of path",
+        "look-ups", "variance", "verdict");
   for (const LabFindings& findings : result.settings) {
     for (const LabMeasurement& measurement : findings.trackers) {
       print_row(findings, measurement, result.level);
@@ -170,15 +165,15 @@ void run(const LabCommandOptions& options) {
       return !stop.requested();
     });
   } catch (const Error&) {
-    line.finish();
+    clear_status();
     if (stop.requested()) fail("interrupted; nothing was written");
     throw;
   }
-  line.finish();
+  clear_status();
   const std::vector<LabFile> files = lab_files(result, command_line());
   for (const LabFile& file : files) folder.write(file.name, file.content);
   print_table(result);
-  fmt::print("{} files in {}: open {}\n", files.size(), options.folder, folder.file("report.html"));
+  print("{} files in {}: open {}\n", files.size(), options.folder, folder.file("report.html"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "apps/freepath/console.h"
 #include "freepath/base/error.h"
 #include "freepath/transport/walker.h"
 
@@ -105,7 +106,7 @@ void warn_if_biased(const std::string& tracker) {
   const std::string name = parse_method(tracker, tracker_infos()).name;
   for (const MethodInfo& info : tracker_infos()) {
     if (info.name != name || !info.biased) continue;
-    fmt::print(stderr, "freepath: warning: tracker {} is biased: {}\n", name, info.unbiased);
+    warn("tracker {} is biased: {}", name, info.unbiased);
   }
 }
 

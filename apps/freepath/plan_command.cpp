@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
 #include "apps/freepath/progress_bar.h"
@@ -90,23 +90,17 @@ std::vector<PilotCandidate> tracker_candidates(const PlanOptions& options) {
 /// A line with the fraction that is done, on a terminal.
 class PilotLine {
  public:
-  PilotLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
-  ~PilotLine() {
-    if (terminal_) fmt::print(stderr, "\r\x1b[K");
-  }
+  PilotLine() = default;
+  ~PilotLine() { clear_status(); }
   PilotLine(const PilotLine&) = delete;
   PilotLine& operator=(const PilotLine&) = delete;
   bool show(const char* what, double fraction) const {
-    if (terminal_) {
-      fmt::print(stderr, "\rpilot of {}: {:3.0f} %\x1b[K", what, 100 * fraction);
-      std::fflush(stderr);
-    }
+    show_status(fmt::format("pilot of {}: {:3.0f} %", what, 100 * fraction));
     return !stop_.requested();
   }
 
  private:
   StopOnInterrupt stop_;
-  bool terminal_;
 };
 
 /// Tries sizes of super-voxels with the best tracker: each makes a medium of the same fields.
@@ -180,47 +174,47 @@ std::string seconds_text(const PilotResult& result, const PicturePlan& plan, dou
 
 void print_table(const PlanTable& table, const PicturePlan& plan, double noise,
                  const char* first_column) {
-  fmt::print("{:<26}{:>10}{:>12}{:>28}\n", first_column, "look-ups", "ns/path",
-             fmt::format("seconds to a noise of {:g}", noise));
+  print("{:<26}{:>10}{:>12}{:>28}\n", first_column, "look-ups", "ns/path",
+        fmt::format("seconds to a noise of {:g}", noise));
   for (std::size_t i = 0; i < table.results.size(); ++i) {
     const PilotResult& result = table.results[i];
     if (!result.refusal.empty()) {
-      fmt::print("{:<26}does not apply: {}\n", result.candidate.name, result.refusal);
+      print("{:<26}does not apply: {}\n", result.candidate.name, result.refusal);
       continue;
     }
-    fmt::print("{:<26}{:>10}{:>12}{:>28}{}\n", result.candidate.name,
-               number_text(result.lookups_per_path, 3), number_text(result.nanoseconds_per_path, 3),
-               seconds_text(result, plan, noise), table.best == i ? "  <- least" : "");
+    print("{:<26}{:>10}{:>12}{:>28}{}\n", result.candidate.name,
+          number_text(result.lookups_per_path, 3), number_text(result.nanoseconds_per_path, 3),
+          seconds_text(result, plan, noise), table.best == i ? "  <- least" : "");
   }
 }
 
 void print_plan(const PicturePlan& plan, const PlanOptions& options) {
-  fmt::print("auto: {}, since {}\n\n", plan.automatic, plan.reason);
+  print("auto: {}, since {}\n\n", plan.automatic, plan.reason);
   print_table(plan.trackers, plan, options.noise, "tracker");
   if (!plan.trackers.best) {
     const bool any = std::any_of(plan.trackers.results.begin(), plan.trackers.results.end(),
                                  [](const PilotResult& result) { return result.refusal.empty(); });
     if (any) {
-      fmt::print("\nThe pilot saw no noise: any tracker will do.\n");
+      print("\nThe pilot saw no noise: any tracker will do.\n");
     } else {
-      fmt::print("\nNo tracker applies with these methods.\n");
+      print("\nNo tracker applies with these methods.\n");
     }
     return;
   }
   const PilotResult& best = plan.trackers.results[*plan.trackers.best];
   if (plan.super_voxels.best) {
-    fmt::print("\nsuper-voxels: edge of {} voxels, {} of them; with {}:\n", plan.chosen_edge,
-               plan.super_voxel_count, best.candidate.name);
+    print("\nsuper-voxels: edge of {} voxels, {} of them; with {}:\n", plan.chosen_edge,
+          plan.super_voxel_count, best.candidate.name);
     print_table(plan.super_voxels, plan, options.noise, "edge [voxels]");
   }
-  fmt::print("\nTake --tracker {} --transmittance {} --interpolation {}", best.candidate.name,
-             best.candidate.configuration.transmittance,
-             to_string(best.candidate.configuration.interpolation));
+  print("\nTake --tracker {} --transmittance {} --interpolation {}", best.candidate.name,
+        best.candidate.configuration.transmittance,
+        to_string(best.candidate.configuration.interpolation));
   if (plan.super_voxels.best) {
     const int edge = plan.edges[*plan.super_voxels.best];
-    if (edge != plan.chosen_edge) fmt::print(" --super-voxel {}", edge);
+    if (edge != plan.chosen_edge) print(" --super-voxel {}", edge);
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 nlohmann::ordered_json to_json(const PlanTable& table, const PicturePlan& plan, double noise) {
@@ -261,7 +255,7 @@ void print_json(const PicturePlan& plan, const PlanOptions& options) {
     json["best_super_voxel"] = plan.edges[*plan.super_voxels.best];
     json["super_voxels"] = to_json(plan.super_voxels, plan, options.noise);
   }
-  fmt::print("{}\n", json.dump(2));
+  print_json_text(json, 2);
 }
 
 void run(const CLI::App& command, const PlanOptions& options) {

@@ -7,7 +7,8 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
+
+#include "apps/freepath/console.h"
 
 namespace freepath::program {
 namespace {
@@ -23,12 +24,10 @@ void on_interrupt(int signal) {
 }  // namespace
 
 ProgressBar::ProgressBar(std::size_t pixels, double time_limit)
-    : pixels_(static_cast<double>(pixels)),
-      time_limit_(time_limit),
-      terminal_(isatty(STDERR_FILENO) != 0) {}
+    : pixels_(static_cast<double>(pixels)), time_limit_(time_limit) {}
 
 void ProgressBar::show(const RenderProgress& progress) const {
-  if (!terminal_ || progress.seconds <= 0) return;
+  if (progress.seconds <= 0) return;
   double done = progress.samples_total > 0 ? progress.samples_done / progress.samples_total : 0;
   if (time_limit_ > 0) done = std::max(done, progress.seconds / time_limit_);
   done = std::clamp(done, 0.0, 1.0);
@@ -39,15 +38,13 @@ void ProgressBar::show(const RenderProgress& progress) const {
       progress.samples_total > 0
           ? fmt::format("{:.0f}/{:.0f}", progress.samples_done, progress.samples_total)
           : fmt::format("{:.0f}", progress.samples_done);
-  fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f} %  {} samples  {:.2f} M samples/s  {} left \x1b[K",
-             "", filled, "", kWidth - filled, 100 * done, samples,
-             1e-6 * progress.samples_done * pixels_ / progress.seconds, clock_text(left));
-  std::fflush(stderr);
+  show_status(fmt::format("[{:=<{}}{: <{}}] {:3.0f} %  {} samples  {:.2f} M samples/s  {} left", "",
+                          filled, "", kWidth - filled, 100 * done, samples,
+                          1e-6 * progress.samples_done * pixels_ / progress.seconds,
+                          clock_text(left)));
 }
 
-void ProgressBar::finish() const {
-  if (terminal_) fmt::print(stderr, "\r\x1b[K");
-}
+void ProgressBar::finish() const { clear_status(); }
 
 std::string clock_text(double seconds) {
   const auto whole = static_cast<int64_t>(std::llround(seconds));

@@ -21,7 +21,6 @@ class ProgressBar {
  private:
   double pixels_;
   double time_limit_;
-  bool terminal_;
 };
 
 /// "1:02:03", "2:03" or "0:03" for seconds.

@@ -5,12 +5,12 @@
 #include <tbb/info.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/error.h"
@@ -131,14 +131,13 @@ void print_counts(const std::string& method, const char* unit, const WalkStatist
   const auto each = [&](uint64_t count) {
     return static_cast<double>(count) / static_cast<double>(counts.rays);
   };
-  fmt::print(stderr,
-             "{}: {} {}s, each {:.2f} lookups, {:.2f} real, {:.2f} null and {:.2f} control "
-             "collisions, {:.2f} super-voxel steps; largest weight {:.4g}, {} negative weights, {} "
-             "bound violations\n",
-             method, counts.rays, unit, each(counts.lookups), each(counts.real_collisions),
-             each(counts.null_collisions), each(counts.control_collisions),
-             each(counts.super_voxel_steps), counts.largest_weight, counts.negative_weights,
-             counts.bound_violations);
+  tell(
+      "{}: {} {}s, each {:.2f} lookups, {:.2f} real, {:.2f} null and {:.2f} control "
+      "collisions, {:.2f} super-voxel steps; largest weight {:.4g}, {} negative weights, {} "
+      "bound violations\n",
+      method, counts.rays, unit, each(counts.lookups), each(counts.real_collisions),
+      each(counts.null_collisions), each(counts.control_collisions), each(counts.super_voxel_steps),
+      counts.largest_weight, counts.negative_weights, counts.bound_violations);
 }
 
 }  // namespace
@@ -177,21 +176,20 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
 
 void write_statistics(const std::string& file, const RenderResult& result,
                       const RenderReport& report) {
-  write_file(file, statistics_json(result, report).dump(2) + '\n');
+  write_file(file, json_text(statistics_json(result, report), 2) + '\n');
 }
 
 void print_warnings(const RenderResult& result) {
   if (result.overflows > 0) {
-    fmt::print(stderr,
-               "freepath: warning: the weights of {} paths left the range of float and count as 0; "
-               "do not trust this picture, take a larger rate-scale or another tracker\n",
-               result.overflows);
+    warn(
+        "the weights of {} paths left the range of float and count as 0; "
+        "do not trust this picture, take a larger rate-scale or another tracker",
+        result.overflows);
   }
   if (result.pixels_without_samples > 0) {
-    fmt::print(
-        stderr,
-        "freepath: warning: {} of {} pixels have no sample, for want of time; they are black "
-        "with alpha 0\n",
+    warn(
+        "{} of {} pixels have no sample, for want of time; they are black "
+        "with alpha 0",
         result.pixels_without_samples,
         static_cast<std::size_t>(result.film.width()) * result.film.height());
   }
@@ -205,18 +203,17 @@ std::string samples_text(const RenderResult& result) {
 void print_summary(const std::vector<std::string>& files, const RenderResult& result,
                    const RenderReport& report) {
   const std::string samples = samples_text(result);
-  if (result.interrupted) fmt::print(stderr, "interrupted after {} samples per pixel\n", samples);
-  fmt::print(
-      stderr, "{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n",
-      samples, clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
-      report.seconds_load, report.seconds_build, report.seconds_render);
-  fmt::print(stderr, "{} paths, {:.2f} lookups each\n", result.paths,
-             static_cast<double>(result.statistics().lookups) /
-                 static_cast<double>(std::max<uint64_t>(result.paths, 1)));
+  if (result.interrupted) tell("interrupted after {} samples per pixel\n", samples);
+  tell("{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n", samples,
+       clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
+       report.seconds_load, report.seconds_build, report.seconds_render);
+  tell("{} paths, {:.2f} lookups each\n", result.paths,
+       static_cast<double>(result.statistics().lookups) /
+           static_cast<double>(std::max<uint64_t>(result.paths, 1)));
   print_counts(report.settings.walk.tracker, "flight", result.free_paths);
   print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
   print_warnings(result);
-  for (const std::string& file : files) fmt::print(stderr, "wrote {}\n", file);
+  for (const std::string& file : files) tell("wrote {}\n", file);
 }
 
 }  // namespace freepath::program

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/render_output.h"
@@ -44,7 +44,7 @@ std::string settle_tracker(const std::string& tracker, const Medium& medium,
   if (tracker == kAutoTracker) {
     const TrackerChoice choice = choose_tracker(medium);
     if (choice.tracker != last) {
-      fmt::print(stderr, "auto: {}, since {}\n", choice.tracker, choice.reason);
+      tell("auto: {}, since {}\n", choice.tracker, choice.reason);
     }
     return choice.tracker;
   }
@@ -89,10 +89,9 @@ void print_frame(std::size_t index, std::size_t count, const PictureFiles& files
     if (!written.empty()) written += ", ";
     written += output;
   }
-  fmt::print(stderr, "frame {} ({} of {}): {}{} samples per pixel in {}, wrote {}\n", *files.frame,
-             index + 1, count, result.interrupted ? "interrupted after " : "", samples_text(result),
-             clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
-             written);
+  tell("frame {} ({} of {}): {}{} samples per pixel in {}, wrote {}\n", *files.frame, index + 1,
+       count, result.interrupted ? "interrupted after " : "", samples_text(result),
+       clock_text(report.seconds_load + report.seconds_build + report.seconds_render), written);
   print_warnings(result);
 }
 
@@ -110,8 +109,8 @@ void print_unfinished(const std::vector<PictureFiles>& frames, std::size_t done)
   if (done == frames.size()) return;
   const std::string finished =
       done == 0 ? "no frame is" : fmt::format("--frames {} are", frame_list(frames, 0, done));
-  fmt::print(stderr, "{} done; to render the others, give --frames {}\n", finished,
-             frame_list(frames, done, frames.size()));
+  tell("{} done; to render the others, give --frames {}\n", finished,
+       frame_list(frames, done, frames.size()));
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "apps/freepath/console.h"
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/render_output.h"
 #include "freepath/base/error.h"
@@ -70,7 +70,7 @@ void render_scene_file(const ScenePlan& plan) {
   if (plan.size) options.size = FilmSize{plan.size->width, plan.size->height};
   BuiltScene built = load_scene(plan.file, diagnostics, options);
   for (const std::string& warning : diagnostics.warnings()) {
-    fmt::print(stderr, "warning: {}\n", warning);
+    warn("{}", warning);
   }
   const std::vector<std::string> outputs = outputs_of(plan, built);
   report.settings = settle(plan, built);
@@ -78,9 +78,9 @@ void render_scene_file(const ScenePlan& plan) {
   report.volumes.push_back({plan.file, {}});
   report.seconds_load = watch.lap();
   if (report.settings.buckets.count > 0 && plan.color == ColorMode::kRgb) {
-    fmt::print(stderr,
-               "warning: the film is of type 'spectral', but with --color rgb there are no "
-               "wavelengths: R, G and B alone are written\n");
+    warn(
+        "the film is of type 'spectral', but with --color rgb there are no "
+        "wavelengths: R, G and B alone are written");
     report.settings.buckets = {};
   }
   warn_if_biased(report.settings.walk.tracker);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
 #include <utility>
 
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "freepath/base/error.h"
 #include "freepath/media/phase/parse_phase_function.h"
@@ -105,7 +105,7 @@ std::vector<Volume> load_volumes(const std::vector<VolumePlan>& plans,
     for (const LoadOptions& grid : plan.grids) {
       for (LoadedField& loaded : load_fields(plan.file, grid)) {
         for (const std::string& warning : loaded.warnings) {
-          fmt::print(stderr, "freepath: warning: {}\n", warning);
+          warn("{}", warning);
         }
         report.back().grids.push_back(loaded.field.name);
         volume.densities.push_back(std::move(loaded.field));

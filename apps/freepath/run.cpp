@@ -1,14 +1,15 @@
 #include "apps/freepath/run.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/report_folder.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
@@ -25,7 +26,7 @@ std::string usage_message(const CLI::App* program, const CLI::Error& error) {
     what = fmt::format("there is no command '{}'", program->remaining().front());
   }
   std::replace(what.begin(), what.end(), '\n', ' ');
-  return fmt::format("freepath: error: {}; freepath{} --help explains\n", what, command);
+  return fmt::format("{}; freepath{} --help explains", what, command);
 }
 
 /// Lets no option have an empty value: it would pass for an option that is not given.
@@ -40,9 +41,17 @@ void refuse_empty_values(CLI::App& program) {
   }
 }
 
-}  // namespace
+/// Says what CLI11 has to say: help, the version, or what is wrong with the command line.
+/// @return the exit status
+int end_parsing(const CLI::App& program, const CLI::ParseError& error) {
+  std::ostringstream output, message;
+  const int status = program.exit(error, output, message);
+  print_lines(output.str());
+  if (!message.str().empty()) tell("freepath: error: {}\n", message.str());
+  return status;
+}
 
-int run(int argc, const char* const* argv) {
+int run_command(int argc, const char* const* argv) {
   set_command_line(argc, argv);
   CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
   program.set_version_flag("--version", version());
@@ -63,18 +72,25 @@ int run(int argc, const char* const* argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error);
+    return end_parsing(program, error);
   } catch (const Error& error) {
-    fmt::print(stderr, "freepath: error: {}\n", error.what());
+    tell("freepath: error: {}\n", error.what());
     return 1;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "freepath: error: out of memory\n");
+    tell("freepath: error: out of memory\n");
     return 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "freepath: internal error: {}\n", error.what());
+    tell("freepath: internal error: {}\n", error.what());
     return 3;
   }
   return 0;
+}
+
+}  // namespace
+
+int run(int argc, const char* const* argv) {
+  prepare_console();
+  return finish_console(run_command(argc, argv));
 }
 
 }  // namespace freepath::program

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/error.h"
@@ -121,20 +122,20 @@ void print_json(const SlabResult& result, const SlabSettings& settings) {
                                        {"paths", result.paths},
                                        {"tracker", result.tracker},
                                        {"seed", settings.walk.seed}};
-  fmt::print("{}\n", json.dump());
+  print_json_text(json);
 }
 
 void print_table(const SlabResult& result) {
   const auto row = [](const char* name, const SlabEstimate& estimate) {
-    fmt::print("{:<15}{:>10.6f}  +- {:.6f}\n", name, estimate.mean, estimate.error);
+    print("{:<15}{:>10.6f}  +- {:.6f}\n", name, estimate.mean, estimate.error);
   };
   row("reflectance", result.reflectance);
   row("transmittance", result.transmittance);
   row("  unscattered", result.unscattered);
   row("absorptance", {1 - result.total.mean, result.total.error});
-  fmt::print("{} paths, tracker {}\n", result.paths, result.tracker);
+  print("{} paths, tracker {}\n", result.paths, result.tracker);
   if (!result.tracker_reason.empty()) {
-    fmt::print("auto: {}, since {}\n", result.tracker, result.tracker_reason);
+    print("auto: {}, since {}\n", result.tracker, result.tracker_reason);
   }
 }
 
@@ -159,10 +160,10 @@ void run(const SlabOptions& options) {
   warn_if_biased(result.tracker);
   constexpr double kWorryingWeight = 10;
   if (result.largest_weight > kWorryingWeight) {
-    fmt::print(stderr,
-               "freepath: warning: weights of paths reach {:.3g}: under {} the variance may be "
-               "infinite in these layers, and the standard errors too small\n",
-               result.largest_weight, result.tracker);
+    warn(
+        "weights of paths reach {:.3g}: under {} the variance may be "
+        "infinite in these layers, and the standard errors too small",
+        result.largest_weight, result.tracker);
   }
   if (options.json) {
     print_json(result, settings);

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
+#include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/render_scene.h"
 #include "freepath/io/content_digest.h"
@@ -89,7 +89,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   Diagnostics diagnostics;
   const auto built = std::make_shared<BuiltScene>(load_scene(plan.file, diagnostics, build));
   for (const std::string& warning : diagnostics.warnings()) {
-    fmt::print(stderr, "warning: {}\n", warning);
+    warn("{}", warning);
   }
   LoadedSubject loaded;
   loaded.settings = settle(plan, *built);

@@ -14,12 +14,12 @@
 #include <bit>
 #include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <string_view>
 #include <utility>
 
+#include "apps/freepath/console.h"
 #include "freepath/base/error.h"
 
 namespace freepath::program {
@@ -138,9 +138,9 @@ void TevDisplay::connect(const DisplayAddress& address) {
 }
 
 void TevDisplay::give_up(const std::string& reason) {
-  fmt::print(stderr, "freepath: warning: --display: {} ({}): {}; the picture is not shown{}\n",
-             created_ ? "lost the viewer" : "no viewer can be reached", place_, reason,
-             created_ ? " any more" : "");
+  warn("--display: {} ({}): {}; the picture is not shown{}",
+       created_ ? "lost the viewer" : "no viewer can be reached", place_, reason,
+       created_ ? " any more" : "");
   if (socket_ >= 0) close(socket_);
   socket_ = -1;
 }

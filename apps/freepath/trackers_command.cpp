@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 
@@ -46,20 +47,20 @@ std::string channels_of(const MethodInfo& info) {
   return info.one_channel ? "a path each" : "one path where the extinction is the same in all";
 }
 
-void print(const char* title, const std::vector<MethodInfo>& infos) {
-  fmt::print("{}\n", title);
+void print_methods(const char* title, const std::vector<MethodInfo>& infos) {
+  print("{}\n", title);
   for (const MethodInfo& info : infos) {
-    fmt::print("\n  {}{}\n      {}\n", info.name, info.biased ? "  (BIASED)" : "", info.summary);
-    if (!info.needs.empty()) fmt::print("      needs:     {}\n", info.needs);
-    fmt::print("      unbiased:  {}\n", info.biased ? "no" : info.unbiased);
-    if (info.name != kAutoInfo.name) fmt::print("      channels:  {}\n", channels_of(info));
-    if (!info.source.empty()) fmt::print("      source:    {}\n", info.source);
+    print("\n  {}{}\n      {}\n", info.name, info.biased ? "  (BIASED)" : "", info.summary);
+    if (!info.needs.empty()) print("      needs:     {}\n", info.needs);
+    print("      unbiased:  {}\n", info.biased ? "no" : info.unbiased);
+    if (info.name != kAutoInfo.name) print("      channels:  {}\n", channels_of(info));
+    if (!info.source.empty()) print("      source:    {}\n", info.source);
     for (const MethodOption& option : info.options) {
-      fmt::print("      {}={}  [{}]\n          {}\n", option.name, values_of(option),
-                 standard_of(option), option.meaning);
+      print("      {}={}  [{}]\n          {}\n", option.name, values_of(option),
+            standard_of(option), option.meaning);
     }
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 nlohmann::json to_json(const std::vector<MethodInfo>& infos) {
@@ -98,11 +99,11 @@ void run(bool json) {
   if (json) {
     const nlohmann::json all = {{"trackers", to_json(trackers)},
                                 {"transmittance", to_json(estimators)}};
-    fmt::print("{}\n", all.dump(2));
+    print_json_text(all, 2);
     return;
   }
-  print("Trackers (--tracker)", trackers);
-  print("Transmittance estimators (--transmittance)", estimators);
+  print_methods("Trackers (--tracker)", trackers);
+  print_methods("Transmittance estimators (--transmittance)", estimators);
 }
 
 }  // namespace

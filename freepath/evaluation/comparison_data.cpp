@@ -8,6 +8,7 @@
 #include "freepath/base/version.h"
 #include "freepath/evaluation/comparison_figures.h"
 #include "freepath/evaluation/comparison_report.h"
+#include "freepath/report/json_text.h"
 
 namespace freepath {
 namespace {
@@ -99,7 +100,7 @@ std::string json_of(const Comparison& comparison, const ReportContext& context) 
   for (std::size_t i = 0; i < comparison.configurations.size(); ++i) {
     json["configurations"].push_back(to_json(comparison, i));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 std::string csv_of(const Comparison& comparison) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "freepath/evaluation/lab_figures.h"
+#include "freepath/report/json_text.h"
 
 namespace freepath {
 namespace {
@@ -272,7 +273,7 @@ std::string lab_json(const LabResult& result) {
   for (const LabFindings& findings : result.settings) {
     object["settings"].push_back(to_json(findings, result.level));
   }
-  return object.dump() + "\n";
+  return json_text(object) + "\n";
 }
 
 std::string lab_csv(const LabResult& result) {

@@ -2,43 +2,21 @@
 
 #include <cstddef>
 
+#include "freepath/base/printable.h"
+
 namespace freepath {
 
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 
-unsigned byte_at(std::string_view text, std::size_t place) {
-  return static_cast<unsigned char>(text[place]);
-}
-
 /// Number of bytes of the character that starts here, which is not ASCII; 0 where there is none
 /// that is well-formed and allowed in XML.
 std::size_t character_length(std::string_view text) {
-  const unsigned first = byte_at(text, 0);
-  std::size_t length = 0;
-  unsigned code = 0;
-  if (first >= 0xC2 && first <= 0xDF) {
-    length = 2;
-    code = first & 0x1F;
-  } else if (first >= 0xE0 && first <= 0xEF) {
-    length = 3;
-    code = first & 0x0F;
-  } else if (first >= 0xF0 && first <= 0xF4) {
-    length = 4;
-    code = first & 0x07;
-  }
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    const unsigned byte = byte_at(text, i);
-    if ((byte & 0xC0) != 0x80) return 0;
-    code = code << 6 | (byte & 0x3F);
-  }
-  const bool is_overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  const bool is_control = code < 0xA0;  // C1, allowed in XML but never meant
-  if (is_overlong || is_surrogate || is_control || code > 0x10FFFF) return 0;
-  return code == 0xFFFE || code == 0xFFFF ? 0 : length;
+  const CodePoint point = front_code_point(text);
+  const bool is_control = point.value < 0xA0;  // C1, allowed in XML but never meant
+  const bool is_no_character = point.value == 0xFFFE || point.value == 0xFFFF;
+  return is_control || is_no_character ? 0 : point.bytes;
 }
 
 /// What stands for an ASCII character; nothing where it stands for itself.
@@ -71,7 +49,7 @@ std::string escape_markup(std::string_view text) {
   result.reserve(text.size());
   while (!text.empty()) {
     std::size_t length = 1;
-    if (byte_at(text, 0) < 0x80) {
+    if (static_cast<unsigned char>(text[0]) < 0x80) {
       const std::string_view replaced = escaped(text[0]);
       result += replaced.empty() ? text.substr(0, 1) : replaced;
     } else {

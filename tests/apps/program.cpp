@@ -203,6 +203,21 @@ ProgramTest::ProgramTest() {
 
 ProgramTest::~ProgramTest() { fs::remove_all(folder_); }
 
+Outcome ProgramTest::shell(const std::string& line) const {
+  const fs::path output = capture_file("output");
+  const fs::path messages = capture_file("messages");
+  const fs::path script = capture_file("script");
+  std::ofstream(script) << "freepath() { \"" FREEPATH_PROGRAM "\" \"$@\"; }\ncd "
+                        << folder_.string() << "\n{ " << line << "\n} >" << output.string() << " 2>"
+                        << messages.string() << '\n';
+  Outcome outcome;
+  set_end(outcome, std::system(("bash " + script.string()).c_str()));
+  outcome.output = read_text(output);
+  outcome.messages = read_text(messages);
+  for (const fs::path& file : {output, messages, script}) fs::remove(file);
+  return outcome;
+}
+
 std::vector<std::string> ProgramTest::files() const {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_))

@@ -56,6 +56,9 @@ class ProgramTest : public ::testing::Test {
   Outcome run(const std::string& line) const { return call_program(words(line), folder_); }
   /// Starts it as a process of its own.
   Outcome start(const std::string& line) const { return start_program(words(line), folder_); }
+  /// Runs a line of a shell in the folder, in which `freepath` is the program; a program that a
+  /// signal ends has 128 and its number for its status.
+  Outcome shell(const std::string& line) const;
   /// Names of the files in the folder, sorted.
   std::vector<std::string> files() const;
 
