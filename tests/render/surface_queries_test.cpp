@@ -97,15 +97,15 @@ TEST(Surfaces, NearestOfManyShapesIsMet) {
     }
     const auto hit = surfaces.intersect(from, direction, 0, kFar);
     BoundaryCrossings crossings;
-    EXPECT_EQ(surfaces.occluded(from, direction, kFar, crossings), hit.has_value());
+    EXPECT_EQ(surfaces.occluded(from, direction, {kFar}, crossings), hit.has_value());
     if (std::isinf(nearest)) {
       EXPECT_FALSE(hit.has_value());
       continue;
     }
     ASSERT_TRUE(hit.has_value());
     EXPECT_NEAR(hit->t, nearest, 2e-5);
-    EXPECT_FALSE(surfaces.occluded(from, direction, hit->t * 0.999F, crossings));
-    EXPECT_TRUE(surfaces.occluded(from, direction, hit->t * 1.001F, crossings));
+    EXPECT_FALSE(surfaces.occluded(from, direction, {hit->t * 0.999F}, crossings));
+    EXPECT_TRUE(surfaces.occluded(from, direction, {hit->t * 1.001F}, crossings));
     EXPECT_FALSE(surfaces.intersect(from, direction, 0, hit->t * 0.999F).has_value());
   }
 }
@@ -121,7 +121,7 @@ TEST(Surfaces, BoundariesDoNotBlockAndAreCrossedInOrder) {
   const Surfaces surfaces(scene, Vec3d(0));
   BoundaryCrossings crossings;
   // Through the diagonal that two triangles of each side of the cube share.
-  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(2, 0, 0), kFar, crossings));
+  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(2, 0, 0), {kFar}, crossings));
   ASSERT_FALSE(crossings.overflowed());
   const std::vector<std::pair<uint32_t, bool>> expected = {{1, true},  {2, true}, {2, false},
                                                            {1, false}, {3, true}, {3, false}};
@@ -130,12 +130,12 @@ TEST(Surfaces, BoundariesDoNotBlockAndAreCrossedInOrder) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(crossings.all()[i].shape, expected[i].first);
     EXPECT_EQ(crossings.all()[i].enters, expected[i].second);
-    EXPECT_NEAR(crossings.all()[i].t, ts[i], 0.02);
+    EXPECT_NEAR(crossings.all()[i].place.t, ts[i], 0.02);
   }
-  EXPECT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(2, 0, 0), 1.5F, crossings));
+  EXPECT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(2, 0, 0), {1.5F}, crossings));
   EXPECT_EQ(crossings.all().size(), 2U);
-  EXPECT_TRUE(surfaces.occluded(Vec3f(0), Vec3f(-1, 0, 0), kFar, crossings));
-  EXPECT_TRUE(surfaces.occluded(Vec3f(20, 0, 0), Vec3f(-1, 0, 0), kFar, crossings));
+  EXPECT_TRUE(surfaces.occluded(Vec3f(0), Vec3f(-1, 0, 0), {kFar}, crossings));
+  EXPECT_TRUE(surfaces.occluded(Vec3f(20, 0, 0), Vec3f(-1, 0, 0), {kFar}, crossings));
 }
 
 TEST(Surfaces, CrossingsOfRandomRaysAlternateThroughClosedBoundaries) {
@@ -148,12 +148,12 @@ TEST(Surfaces, CrossingsOfRandomRaysAlternateThroughClosedBoundaries) {
     const Vec3f from(random.direction() * 3.0);
     const Vec3f direction = Vec3f(random.in_box(1)) - from;
     BoundaryCrossings crossings;
-    ASSERT_FALSE(surfaces.occluded(from, direction, kFar, crossings));
+    ASSERT_FALSE(surfaces.occluded(from, direction, {kFar}, crossings));
     std::array<bool, 2> inside{};
-    float last = 0;
+    double last = 0;
     for (const BoundaryCrossing& crossing : crossings.all()) {
-      ASSERT_GE(crossing.t, last);
-      last = crossing.t;
+      ASSERT_GE(crossing.place.t, last);
+      last = crossing.place.t;
       ASSERT_EQ(crossing.enters, !inside[crossing.shape]);
       inside[crossing.shape] = crossing.enters;
     }
@@ -166,7 +166,7 @@ TEST(Surfaces, CrossingsOfCoincidentBoundariesAreEachOnce) {
   for (uint32_t i = 0; i < 3; ++i) scene.shapes.push_back(boundary(cube(1), i, {3, 0, 0}));
   const Surfaces surfaces(scene, Vec3d(0));
   BoundaryCrossings crossings;
-  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(1, 0, 0), kFar, crossings));
+  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(1, 0, 0), {kFar}, crossings));
   ASSERT_EQ(crossings.all().size(), 6U);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(crossings.all()[i].enters, i < 3);
 }
@@ -178,12 +178,12 @@ TEST(Surfaces, MoreCrossingsThanThereIsRoomForKeepTheNearest) {
   }
   const Surfaces surfaces(scene, Vec3d(0));
   BoundaryCrossings crossings;
-  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(0, 0, 1), kFar, crossings));
+  ASSERT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(0, 0, 1), {kFar}, crossings));
   EXPECT_TRUE(crossings.overflowed());
   ASSERT_EQ(crossings.all().size(), BoundaryCrossings::kCapacity);
   for (uint32_t i = 0; i < BoundaryCrossings::kCapacity; ++i) {
     const uint32_t centre = 1 + i / 2;
-    EXPECT_NEAR(crossings.all()[i].t, centre + (i % 2 == 0 ? -0.4 : 0.4), 1e-5);
+    EXPECT_NEAR(crossings.all()[i].place.t, centre + (i % 2 == 0 ? -0.4 : 0.4), 1e-5);
   }
 }
 
@@ -263,7 +263,7 @@ TEST(Surfaces, ARayThatLeavesAMeshDoesNotMeetItAgain) {
       const Vec3f start = surfaces.offset_ray_origin(hit->point, onward);
       if (surfaces.intersect(start, onward, 0, kFar)) ++again;
       BoundaryCrossings crossings;
-      if (surfaces.occluded(start, onward, kFar, crossings)) ++again;
+      if (surfaces.occluded(start, onward, {kFar}, crossings)) ++again;
       // The offset is a few roundings of the position.
       ASSERT_LT((start - hit->point.position).length(), 3e-6 * scale);
     }
@@ -362,7 +362,7 @@ TEST(Surfaces, NothingIsMetWhereThereIsNothing) {
   const Surfaces surfaces(SurfaceScene{}, Vec3d(0));
   BoundaryCrossings crossings;
   EXPECT_FALSE(surfaces.intersect(Vec3f(0), Vec3f(1, 0, 0), 0, kFar).has_value());
-  EXPECT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(1, 0, 0), kFar, crossings));
+  EXPECT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(1, 0, 0), {kFar}, crossings));
   EXPECT_TRUE(crossings.empty());
   EXPECT_TRUE(surfaces.bounds().isEmpty());
 }

@@ -1,7 +1,9 @@
 #pragma once
 /// @file What light sampling returns.
 
+#include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "freepath/base/channels.h"
 #include "freepath/base/vector.h"
@@ -20,6 +22,11 @@ struct LightDraw {
   /// With the probability of choosing the light [1/sr]; of a light without extent that probability
   /// alone. With 0 the draw is to be dropped.
   float pdf = 0;
+  /// Of an area light, which of SceneLightsDescription::area_lights and SurfacePoint::primitive.
+  struct Area {
+    uint32_t light = 0, primitive = 0;
+  };
+  std::optional<Area> area = {};
   /// No ray finds this light by chance, so that the draw has the whole weight.
   bool delta = false;
 };

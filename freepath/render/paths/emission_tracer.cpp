@@ -17,16 +17,14 @@ void EmissionTracer::add(uint32_t owner, const ScenePath& path, const Vec3f& pos
                          const Vec3f& direction, const Channels& weight) {
   float length = std::numeric_limits<float>::infinity();
   // No surface cuts the medium where it is clear.
-  const bool clear = scene_.is_clear[path.medium] &&
-                     scene_.media[path.medium].bounds().intersects(Vec3d(position) + scene_.origin);
+  const bool clear = scene_.is_clear_at(path.medium, position);
   if (scene_.surfaces && !clear) {
     if (const auto hit = scene_.surfaces->intersect(position, direction, 0,
                                                     std::numeric_limits<float>::infinity())) {
       length = hit->t;
     }
   }
-  const auto& walkers = path.colors->media[path.medium]->walkers;
-  const Walker& walker = walkers[path.channel < 0 ? 0 : path.channel];
+  const Walker& walker = path.colors->walker(path.medium, path.channel);
   auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(lines_.size()));
   lines_.push_back({owner, weight});
   RayStream& rays = batch.rays;

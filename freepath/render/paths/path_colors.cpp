@@ -1,7 +1,11 @@
 #include "freepath/render/paths/path_colors.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <string>
 #include <utility>
 
 #include "freepath/base/error.h"
@@ -50,7 +54,11 @@ double shift_of(uint64_t seed) {
 
 ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths,
                            const WalkSettings& walk)
-    : scene_(scene), mode_(mode), wavelengths_(wavelengths), walk_(walk) {
+    : scene_(scene),
+      mode_(mode),
+      wavelengths_(wavelengths),
+      walk_(walk),
+      combinations_(scene.media.size()) {
   if (wavelengths < 1 || wavelengths > kMaxChannels) {
     fail("a path carries 1 to {} wavelengths, not {}; CMake's FREEPATH_MAX_CHANNELS sets how many",
          kMaxChannels, wavelengths);
@@ -79,9 +87,10 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
               std::all_of(scene.media.begin(), scene.media.end(), [&](const SceneMedium& medium) {
                 return medium.is_grey(*scene.spectra);
               });
-  rgb_ = mode == ColorMode::kRgb
-             ? make(first)
-             : std::make_shared<const PathColors>(PathColors{scene.spectra->seen_in_rgb(), {}});
+  rgb_ = mode == ColorMode::kRgb ? make(first)
+                                 : std::make_shared<const PathColors>(
+                                       *this, scene.spectra->seen_in_rgb(),
+                                       std::vector<std::shared_ptr<const MediumWalkers>>{});
   make_guides();
 }
 
@@ -115,26 +124,102 @@ std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
     std::size_t medium, const SpectrumValues& spectra) const {
   auto result = std::make_shared<MediumWalkers>();
   result->bound = scene_.media[medium].bind(spectra);
+  add_walkers(*result);
+  return result;
+}
+
+void ColorFactory::add_walkers(MediumWalkers& walkers) const {
   WalkSettings settings = walk_;
   settings.origin = scene_.origin;
-  const MediumChannels& channels = result->bound.channels;
+  const MediumChannels& channels = walkers.bound.channels;
   if (paths_per_sample_ == 1) {
-    result->walkers.emplace_back(*result->bound.medium, channels, settings);
+    walkers.walkers.emplace_back(*walkers.bound.medium, channels, settings);
   } else {
     for (int c = 0; c < channels.count; ++c) {
-      result->walkers.emplace_back(*result->bound.medium, channels.only(c), settings);
+      walkers.walkers.emplace_back(*walkers.bound.medium, channels.only(c), settings);
     }
+  }
+}
+
+std::shared_ptr<const Medium> ColorFactory::combined_medium(
+    MediumId combination, const std::vector<std::shared_ptr<const Medium>>& media) const {
+  {
+    const std::shared_lock lock(mutex_);
+    const auto found = combined_media_.find(combination);
+    if (found != combined_media_.end() && found->second.media == media) {
+      return found->second.medium;
+    }
+  }
+  std::shared_ptr<const Medium> medium = combine_media(media);
+  const std::unique_lock lock(mutex_);
+  combined_media_[combination] = {media, medium};
+  return medium;
+}
+
+std::shared_ptr<const MediumWalkers> ColorFactory::make_combination(
+    MediumId combination, const PathColors& colors) const {
+  auto result = std::make_shared<MediumWalkers>();
+  std::vector<std::shared_ptr<const Medium>> media;
+  std::string names;
+  for (const MediumId member : combinations_.members(combination)) {
+    const BoundMedium& bound = colors.media[member]->bound;
+    media.push_back(bound.medium);
+    names += (names.empty() ? "'" : ", '") + scene_.media[member].name() + "'";
+    MediumChannels& channels = result->bound.channels;
+    channels.count = bound.channels.count;
+    for (uint32_t k = 0; k < bound.channels.components.size(); ++k) {
+      channels.components.push_back(bound.channels.components[k]);
+      result->origins.push_back({member, k});
+    }
+  }
+  try {
+    result->bound.medium = combined_medium(combination, media);
+    add_walkers(*result);
+  } catch (const Error& error) {
+    fail(
+        "the media {} overlap at a place and can't be rendered together ({}); let the boundary of "
+        "one name the other as what is outside",
+        names, error.what());
   }
   return result;
 }
 
-std::shared_ptr<const PathColors> ColorFactory::make(SpectrumValues spectra) const {
-  auto colors = std::make_shared<PathColors>();
-  for (std::size_t i = 0; i < scene_.media.size(); ++i) {
-    colors->media.push_back(constant_[i] ? constant_[i] : make_walkers(i, spectra));
+std::shared_ptr<const MediumWalkers> ColorFactory::combine(MediumId combination,
+                                                           const PathColors& colors) const {
+  const std::vector<MediumId> members = combinations_.members(combination);
+  const bool is_constant = std::all_of(members.begin(), members.end(), [&](MediumId member) {
+    return constant_[member] != nullptr;
+  });
+  if (is_constant) {
+    const std::shared_lock lock(mutex_);
+    const auto found = constant_combinations_.find(combination);
+    if (found != constant_combinations_.end()) return found->second;
   }
-  colors->spectra = std::move(spectra);
-  return colors;
+  // Builders run in parallel: no task of rendering may come in between.
+  std::shared_ptr<const MediumWalkers> made;
+  tbb::this_task_arena::isolate([&] { made = make_combination(combination, colors); });
+  if (!is_constant) return made;
+  const std::unique_lock lock(mutex_);
+  return constant_combinations_.try_emplace(combination, std::move(made)).first->second;
+}
+
+const MediumWalkers& PathColors::combination(MediumId medium) const {
+  {
+    const std::shared_lock lock(mutex_);
+    const auto found = combinations_.find(medium);
+    if (found != combinations_.end()) return *found->second;
+  }
+  std::shared_ptr<const MediumWalkers> made = factory_.combine(medium, *this);
+  const std::unique_lock lock(mutex_);
+  return *combinations_.try_emplace(medium, std::move(made)).first->second;
+}
+
+std::shared_ptr<const PathColors> ColorFactory::make(SpectrumValues spectra) const {
+  std::vector<std::shared_ptr<const MediumWalkers>> media;
+  for (std::size_t i = 0; i < scene_.media.size(); ++i) {
+    media.push_back(constant_[i] ? constant_[i] : make_walkers(i, spectra));
+  }
+  return std::make_shared<const PathColors>(*this, std::move(spectra), std::move(media));
 }
 
 std::shared_ptr<const PathColors> ColorFactory::colors_of_sample(uint32_t sample) const {

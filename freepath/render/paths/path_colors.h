@@ -2,10 +2,14 @@
 /// @file What the channels of paths stand for, and the walkers of media in these channels.
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <shared_mutex>
+#include <utility>
 #include <vector>
 
 #include "freepath/render/paths/emission_guide.h"
+#include "freepath/render/paths/media_combinations.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/spectra/spectrum_table.h"
 #include "freepath/transport/walker.h"
@@ -14,14 +18,47 @@ namespace freepath {
 
 /// Walkers of a medium: one for all channels of a path, or one for each.
 struct MediumWalkers {
+  /// A component of a medium of the scene.
+  struct Origin {
+    MediumId medium = kVacuum;
+    uint32_t component = 0;
+  };
+
   BoundMedium bound;
   std::vector<Walker> walkers;
+  std::vector<Origin> origins;  ///< Of the components of a combination; else none.
 };
 
+class ColorFactory;
+
 /// Paths that share wavelengths: the spectra at them and the walkers of all media.
-struct PathColors {
-  SpectrumValues spectra;
-  std::vector<std::shared_ptr<const MediumWalkers>> media;
+class PathColors {
+ public:
+  /// @param factory must outlive this
+  PathColors(const ColorFactory& factory, SpectrumValues values,
+             std::vector<std::shared_ptr<const MediumWalkers>> walkers)
+      : spectra(std::move(values)), media(std::move(walkers)), factory_(factory) {}
+
+  /// Of a medium, or of a combination, which are made when they are first asked for.
+  /// @throws Error if the media of a combination can't be walked together
+  const MediumWalkers& walkers(MediumId medium) const {
+    const auto number = static_cast<std::size_t>(medium);
+    return number < media.size() ? *media[number] : combination(medium);
+  }
+  /// @param channel the one that a path carries, or -1
+  const Walker& walker(MediumId medium, int channel) const {
+    return walkers(medium).walkers[channel < 0 ? 0 : channel];
+  }
+
+  const SpectrumValues spectra;
+  const std::vector<std::shared_ptr<const MediumWalkers>> media;
+
+ private:
+  const MediumWalkers& combination(MediumId medium) const;
+
+  const ColorFactory& factory_;
+  mutable std::shared_mutex mutex_;
+  mutable std::map<MediumId, std::shared_ptr<const MediumWalkers>> combinations_;
 };
 
 /// Makes colours for the samples of a scene. In R, G, B all samples share them. In spectral mode a
@@ -43,9 +80,21 @@ class ColorFactory {
   /// Whether samples differ in walkers, so that flights of different samples are walked apart.
   bool depends_on_sample() const { return depends_on_sample_; }
   /// Directions towards the emission of a medium, null where there is none.
-  const EmissionGuide* guide(std::size_t medium) const { return guides_[medium].get(); }
-  /// Whether so much of a medium glows that a guide costs more than it gives.
-  bool glow_is_spread(std::size_t medium) const { return glow_is_spread_[medium]; }
+  const EmissionGuide* guide(MediumId medium) const {
+    const auto number = static_cast<std::size_t>(medium);
+    return number < guides_.size() ? guides_[number].get() : nullptr;
+  }
+  /// Whether so much of a medium glows that a guide costs more than it gives. Paths in combinations
+  /// do without.
+  bool glow_is_spread(MediumId medium) const {
+    const auto number = static_cast<std::size_t>(medium);
+    return number >= glow_is_spread_.size() || glow_is_spread_[number];
+  }
+  /// What fills a place.
+  MediumId medium_of(const MediaSet& media) const { return combinations_.of(media); }
+  /// The walkers of a combination of media, made of those of its media.
+  std::shared_ptr<const MediumWalkers> combine(MediumId combination,
+                                               const PathColors& colors) const;
   /// R, G, B of the scene's spectra: as given where R, G, B is rendered, else as the observer sees
   /// the spectra, so that light may be seen in both ways.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
@@ -56,6 +105,11 @@ class ColorFactory {
  private:
   std::shared_ptr<const MediumWalkers> make_walkers(std::size_t medium,
                                                     const SpectrumValues& spectra) const;
+  void add_walkers(MediumWalkers& walkers) const;
+  std::shared_ptr<const MediumWalkers> make_combination(MediumId combination,
+                                                        const PathColors& colors) const;
+  std::shared_ptr<const Medium> combined_medium(
+      MediumId combination, const std::vector<std::shared_ptr<const Medium>>& media) const;
   std::shared_ptr<const PathColors> make(SpectrumValues spectra) const;
   void make_guides();
   SpectrumValues spectra_of_sample(uint32_t sample) const;
@@ -72,6 +126,16 @@ class ColorFactory {
   std::shared_ptr<const PathColors> rgb_;
   std::vector<std::unique_ptr<const EmissionGuide>> guides_;  // of media
   std::vector<bool> glow_is_spread_;                          // of media
+  MediaCombinations combinations_;
+  /// What is the same for all samples: walkers of combinations of constant media, and media
+  /// together with those that they are made of.
+  struct CombinedMedium {
+    std::vector<std::shared_ptr<const Medium>> media;
+    std::shared_ptr<const Medium> medium;
+  };
+  mutable std::shared_mutex mutex_;
+  mutable std::map<MediumId, std::shared_ptr<const MediumWalkers>> constant_combinations_;
+  mutable std::map<MediumId, CombinedMedium> combined_media_;
 };
 
 }  // namespace freepath

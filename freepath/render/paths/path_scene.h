@@ -12,6 +12,7 @@
 #include "freepath/render/cameras/scene_camera.h"
 #include "freepath/render/lights/scene_lights.h"
 #include "freepath/render/materials/material.h"
+#include "freepath/render/paths/media_set.h"
 #include "freepath/render/paths/scene_medium.h"
 #include "freepath/render/surfaces/surfaces.h"
 #include "freepath/render/textures/texture_table.h"
@@ -19,15 +20,12 @@
 
 namespace freepath {
 
-/// A medium of PathScene::media, or none.
-using MediumId = int32_t;
-inline constexpr MediumId kVacuum = -1;
-
 /// What a shape of PathScene::surfaces is made of.
 struct PathShape {
   std::optional<uint32_t> material;  ///< None: a boundary, where the medium alone changes.
   std::optional<uint32_t> light;     ///< Of SceneLightsDescription::area_lights.
-  /// The media on both sides. Where they are the same, a path keeps the one that it is in.
+  /// The media on both sides, as MediaSet::cross takes them. Where they are the same, nothing
+  /// changes.
   MediumId inside = kVacuum, outside = kVacuum;
 };
 
@@ -49,13 +47,20 @@ struct PathScene {
   std::optional<Surfaces> surfaces;  ///< None where there are no shapes.
   std::optional<SceneLights> lights;
   std::optional<SceneCamera> camera;
-  MediumId camera_medium = kVacuum;
+  MediaSet camera_media;
   float exposure_scale = 1;  ///< What the film multiplies radiance by.
   PixelFilter filter;
   SampleKind samples = SampleKind::kSobol;
   /// Of each medium: whether no surface passes through its bounds and all of them are filled with
   /// it, so that flights that begin in them need not look for surfaces before they leave.
   std::vector<bool> is_clear;
+
+  /// Whether a flight in a medium from this place need not look for surfaces.
+  bool is_clear_at(MediumId medium, const Vec3f& position) const {
+    const auto number = static_cast<std::size_t>(medium);
+    return number < media.size() && is_clear[number] &&
+           media[number].bounds().intersects(Vec3d(position) + origin);
+  }
 };
 
 }  // namespace freepath

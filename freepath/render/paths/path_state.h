@@ -20,7 +20,8 @@ struct ScenePath {
   /// Where the ray ends at a surface, once that is known.
   std::optional<SurfaceHit> hit;
   bool surfaces_known = false;
-  MediumId medium = kVacuum;
+  MediaSet media;
+  MediumId medium = kVacuum;  ///< What these media are together: ColorFactory::medium_of.
 
   const PathColors* colors = nullptr;
   Channels throughput;

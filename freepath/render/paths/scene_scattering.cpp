@@ -3,13 +3,6 @@
 #include "freepath/render/paths/scene_wavefront.h"
 
 namespace freepath {
-namespace {
-
-/// Light on a surface is not shadowed by that surface itself.
-constexpr float kShadowLength = 1 - 1e-4F;
-
-}  // namespace
-
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
   const bool needs_spectrum = !spectra_.empty();
   if (!setup_.factory->sees_rgb() || path.is_coloured || needs_spectrum) return false;
@@ -37,15 +30,87 @@ void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& di
   ++path.flights;
 }
 
-void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) const {
-  path.medium = medium_beyond(scene_.shapes[hit.point.shape], !hit.from_inside, path.medium);
+int SceneWavefront::rank(uint32_t shape) const {
+  const PathShape& sides = scene_.shapes[shape];
+  if (sides.light) return 3;
+  if (!sides.material) return 0;
+  return scene_.materials[*sides.material].transmits() ? 1 : 2;
+}
+
+SurfaceHit SceneWavefront::choose_surface(const ScenePath& path) {
+  SurfaceHit hit = *path.hit;
+  ties_.clear();
+  if (!hit.is_tied) return hit;
+  const Surfaces& surfaces = *scene_.surfaces;
+  surfaces.find_ties(path.origin, path.direction, hit, ties_);
+  Vec3f beyond = surfaces.offset_ray_origin(hit.point, path.direction);
+  const auto take = [&](TiedSurface& tied) {
+    const TiedSurface before{hit.place, hit.point.shape, !hit.from_inside};
+    hit = surfaces.describe(path.origin, path.direction, tied);
+    tied = before;
+  };
+  // All boundaries at the place are crossed at once: nothing lies between them.
+  if (rank(hit.point.shape) == 0) {
+    for (TiedSurface& tied : ties_) {
+      if (rank(tied.shape) > 0 || surfaces.is_beyond(tied.place, beyond, path.direction)) continue;
+      take(tied);
+      beyond = surfaces.offset_ray_origin(hit.point, path.direction);
+    }
+  }
+  // What a ray from beyond would meet may wait.
+  TiedSurface* chosen = nullptr;
+  int highest = rank(hit.point.shape);
+  for (TiedSurface& tied : ties_) {
+    const int other = rank(tied.shape);
+    if (other <= highest || !surfaces.is_beyond(tied.place, beyond, path.direction)) continue;
+    highest = other;
+    chosen = &tied;
+  }
+  if (chosen != nullptr) take(*chosen);
+  return hit;
+}
+
+SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const SurfaceHit& hit,
+                                                 const Vec3f& direction) const {
+  Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.media};
+  const auto cross = [&](uint32_t shape, bool enters) {
+    departure.media.cross(scene_.shapes[shape].inside, scene_.shapes[shape].outside, enters);
+  };
+  const bool goes_through = (direction.dot(hit.point.normal) > 0) == hit.from_inside;
+  if (goes_through) cross(hit.point.shape, !hit.from_inside);
+  for (const TiedSurface& tied : ties_) {
+    if (scene_.surfaces->is_beyond(tied.place, departure.origin, path.direction)) {
+      cross(tied.shape, tied.enters);
+    }
+  }
+  return departure;
+}
+
+void SceneWavefront::set_media(ScenePath& path, const MediaSet& media) const {
+  if (media == path.media) return;
+  path.media = media;
+  path.medium = setup_.factory->medium_of(media);
+}
+
+ShadowEnd SceneWavefront::shadow_end(const LightDraw& light) const {
+  ShadowEnd end{light.distance};
+  if (light.area && light.area->light < shapes_of_lights_.size() &&
+      shapes_of_lights_[light.area->light]) {
+    end.target = {*shapes_of_lights_[light.area->light], light.area->primitive};
+  }
+  return end;
+}
+
+void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
+  const Departure departure = depart(path, hit, path.direction);
+  set_media(path, departure.media);
   if (path.scatterings == 0) path.distance += hit.t;
-  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, path.direction), path.direction);
+  go_on(path, departure.origin, path.direction);
 }
 
 void SceneWavefront::meet_surface(std::size_t slot) {
   ScenePath& path = paths_[slot];
-  const SurfaceHit& hit = *path.hit;
+  const SurfaceHit hit = choose_surface(path);
   const PathShape& shape = scene_.shapes[hit.point.shape];
   if (shape.light) {
     const bool in_rgb = sees_rgb(path);
@@ -59,11 +124,10 @@ void SceneWavefront::meet_surface(std::size_t slot) {
     (in_rgb ? path.rgb : path.radiance) += light_throughput(path, in_rgb) * light.radiance * share;
   }
   if (!shape.material) {
-    const SurfaceHit crossed = hit;  // which goes with the ray
-    cross_boundary(path, crossed);
+    cross_boundary(path, hit);
     return;
   }
-  scatter_at_surface(slot);
+  scatter_at_surface(slot, hit);
 }
 
 bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
@@ -76,9 +140,8 @@ bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
   return true;
 }
 
-void SceneWavefront::scatter_at_surface(std::size_t slot) {
+void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) {
   ScenePath& path = paths_[slot];
-  const SurfaceHit hit = *path.hit;
   const PathShape& shape = scene_.shapes[hit.point.shape];
   const Material& material = scene_.materials[*shape.material];
   if (layers_.on()) {
@@ -99,9 +162,6 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
   }
   const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   const Vec3f position = hit.point.position;
-  const auto side = [&](const Vec3f& direction) {
-    return medium_beyond(shape, direction.dot(hit.point.normal) < 0, path.medium);
-  };
   if (!material.is_specular() && !scene_.lights->is_dark()) {
     const float u0 = random.uniform();
     const float u1 = random.uniform();
@@ -113,10 +173,9 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
       const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
       const Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
       if (!is_black(radiance)) {
-        shadows_.add(static_cast<uint32_t>(slot),
-                     scene_.surfaces->offset_ray_origin(hit.point, light.direction),
-                     light.direction, light.distance * kShadowLength, side(light.direction),
-                     radiance, false);
+        const Departure departure = depart(path, hit, light.direction);
+        shadows_.add(static_cast<uint32_t>(slot), departure.origin, light.direction,
+                     shadow_end(light), departure.media, radiance, false);
       }
     }
   }
@@ -130,13 +189,18 @@ void SceneWavefront::scatter_at_surface(std::size_t slot) {
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
   path.scattered_from = position;
-  path.medium = side(next->direction);
-  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, next->direction), next->direction);
+  const Departure departure = depart(path, hit, next->direction);
+  set_media(path, departure.media);
+  go_on(path, departure.origin, next->direction);
 }
 
 void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
   ScenePath& path = paths_[slot];
-  const SceneMedium& medium = scene_.media[path.medium];
+  MediumWalkers::Origin scatterer{path.medium, static_cast<uint32_t>(component)};
+  const auto& origins = path.colors->walkers(path.medium).origins;
+  if (!origins.empty()) scatterer = origins[component];
+  component = scatterer.component;
+  const SceneMedium& medium = scene_.media[scatterer.medium];
   if (layers_.on()) {
     layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
@@ -165,8 +229,8 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
       const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
       const Channels radiance = light_throughput(path, in_rgb) * light.radiance * share;
       if (!is_black(radiance)) {
-        shadows_.add(static_cast<uint32_t>(slot), position, light.direction,
-                     light.distance * kShadowLength, path.medium, radiance, in_rgb);
+        shadows_.add(static_cast<uint32_t>(slot), position, light.direction, shadow_end(light),
+                     path.media, radiance, in_rgb);
       }
     }
   }

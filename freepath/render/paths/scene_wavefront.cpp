@@ -30,8 +30,16 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
       scene_(*setup.scene),
       paths_(setup.slots),
       batches_(setup.slots, true),
-      shadows_(*setup.scene, setup.slots),
-      emissions_(*setup.scene, setup.slots) {}
+      shadows_(*setup.scene, *setup.factory, setup.slots),
+      emissions_(*setup.scene, setup.slots) {
+  camera_medium_ = setup.factory->medium_of(scene_.camera_media);
+  for (uint32_t shape = 0; shape < scene_.shapes.size(); ++shape) {
+    const std::optional<uint32_t> light = scene_.shapes[shape].light;
+    if (!light) continue;
+    if (*light >= shapes_of_lights_.size()) shapes_of_lights_.resize(*light + std::size_t{1});
+    shapes_of_lights_[*light] = shape;
+  }
+}
 
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   results_.assign(job.pixels * job.samples * setup_.factory->paths_per_sample(), PathSample{});
@@ -100,7 +108,8 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
   path.throughput *= filtered.weight;
   path.origin = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;
-  path.medium = scene_.camera_medium;
+  path.media = scene_.camera_media;
+  path.medium = camera_medium_;
   if (per_sample == 1) {
     RandomStream random(setup_.seed, path.pixel, path.sample_key,
                         stream_number(StreamPurpose::kCamera, 0));
@@ -111,9 +120,7 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
 
 bool SceneWavefront::needs_surfaces_first(const ScenePath& path) const {
   if (!scene_.surfaces || path.surfaces_known) return false;
-  if (path.medium == kVacuum || !scene_.is_clear[path.medium]) return true;
-  const Box3d& box = scene_.media[path.medium].bounds();
-  return !box.intersects(Vec3d(path.origin) + scene_.origin);
+  return !scene_.is_clear_at(path.medium, path.origin);
 }
 
 void SceneWavefront::find_surface(ScenePath& path) const {
@@ -133,8 +140,7 @@ void SceneWavefront::fly() {
       fly_in_vacuum(slot);
       continue;
     }
-    const auto& walkers = path.colors->media[path.medium]->walkers;
-    const Walker& walker = walkers[path.channel < 0 ? 0 : path.channel];
+    const Walker& walker = path.colors->walker(path.medium, path.channel);
     auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(slot));
     RayStream& rays = batch.rays;
     set_ray(rays, i, path.origin, path.direction,

@@ -65,9 +65,22 @@ class SceneWavefront {
   /// A path's throughput in the channels of these spectra.
   static Channels light_throughput(const ScenePath& path, bool in_rgb);
   void escape(ScenePath& path);
+  /// The surface that a path meets where its ray ends. Of several at the place an opaque one is
+  /// never passed over, nor a light; ties_ are the others.
+  SurfaceHit choose_surface(const ScenePath& path);
+  /// Which of several surfaces at a place is met: the highest, and of equal ones the nearest.
+  int rank(uint32_t shape) const;
   void meet_surface(std::size_t slot);
-  void cross_boundary(ScenePath& path, const SurfaceHit& hit) const;
-  void scatter_at_surface(std::size_t slot);
+  void cross_boundary(ScenePath& path, const SurfaceHit& hit);
+  void scatter_at_surface(std::size_t slot, const SurfaceHit& hit);
+  /// Where a new ray starts at a surface, and the media that are there.
+  struct Departure {
+    Vec3f origin;
+    MediaSet media;
+  };
+  Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction) const;
+  void set_media(ScenePath& path, const MediaSet& media) const;
+  ShadowEnd shadow_end(const LightDraw& light) const;
   void scatter_in_medium(std::size_t slot, float t, std::size_t component);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
@@ -90,6 +103,9 @@ class SceneWavefront {
 
   const SceneSetup& setup_;
   const PathScene& scene_;
+  MediumId camera_medium_ = kVacuum;
+  std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
+  std::vector<TiedSurface> ties_;                          // of the surface that a path meets
   std::vector<ScenePath> paths_;
   std::size_t active_ = 0;
   WalkBatches batches_;

@@ -1,6 +1,6 @@
 #include "freepath/render/paths/shadow_tracer.h"
 
-#include <algorithm>
+#include <optional>
 
 #include "freepath/base/random.h"
 
@@ -21,11 +21,12 @@ uint32_t stream_of(uint32_t flight, uint32_t segment) {
 
 }  // namespace
 
-void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, MediumId medium, float begin,
-                               float end) {
-  if (medium == kVacuum || !(begin < end)) return;
-  const auto& walkers = path.colors->media[medium]->walkers;
-  const Walker& walker = walkers[path.channel < 0 ? 0 : path.channel];
+void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media,
+                               float begin, float end) {
+  if (!(begin < end)) return;
+  const MediumId medium = factory_.medium_of(media);
+  if (medium == kVacuum) return;
+  const Walker& walker = path.colors->walker(medium, path.channel);
   auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
   segments_.emplace_back(1.0F);
   set_ray(batch.rays, slot, shadow.origin + shadow.direction * begin, shadow.direction,
@@ -38,31 +39,33 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, MediumId m
 void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
   shadow.first_segment = static_cast<uint32_t>(segments_.size());
   if (!scene_.surfaces) {
-    add_segment(shadow, path, shadow.medium, 0, shadow.distance);
+    add_segment(shadow, path, shadow.media, 0, shadow.end.distance);
     return;
   }
   float begin = 0;
-  MediumId medium = shadow.medium;
-  Vec3f origin = shadow.origin;
-  float passed = 0;  // where `origin` is
+  MediaSet media = shadow.media;
   BoundaryCrossings crossings;
+  std::optional<RayPlace> last;  // which crossing came before
   while (true) {
-    crossings.clear();
-    if (scene_.surfaces->occluded(origin, shadow.direction, shadow.distance - passed, crossings)) {
+    if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings,
+                                  last ? &*last : nullptr)) {
       shadow.radiance = Channels();
       return;
     }
     for (const BoundaryCrossing& crossing : crossings.all()) {
-      add_segment(shadow, path, medium, begin, passed + crossing.t);
-      begin = passed + crossing.t;
-      medium = medium_beyond(scene_.shapes[crossing.shape], crossing.enters, medium);
+      // Those at one place are crossed as one: nothing lies between them.
+      if (!last || !crossing.place.is_tied(*last)) {
+        const auto end = static_cast<float>(crossing.place.t);
+        add_segment(shadow, path, media, begin, end);
+        begin = end;
+      }
+      last = crossing.place;
+      const PathShape& shape = scene_.shapes[crossing.shape];
+      media.cross(shape.inside, shape.outside, crossing.enters);
     }
     if (!crossings.overflowed()) break;
-    // A little beyond the last one, so that it is not crossed again.
-    passed = begin + std::max(1e-5F * begin, 1e-6F);
-    origin = shadow.origin + shadow.direction * passed;
   }
-  add_segment(shadow, path, medium, begin, shadow.distance);
+  add_segment(shadow, path, media, begin, shadow.end.distance);
 }
 
 void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {

@@ -17,15 +17,17 @@ namespace freepath {
 /// end, then through the media between them.
 class ShadowTracer {
  public:
-  ShadowTracer(const PathScene& scene, std::size_t slots) : scene_(scene), batches_(slots, false) {}
+  ShadowTracer(const PathScene& scene, const ColorFactory& factory, std::size_t slots)
+      : scene_(scene), factory_(factory), batches_(slots, false) {}
 
   /// Adds a ray.
   /// @param owner of PathState, whose radiance it is to add to
+  /// @param media at its origin
   /// @param radiance what it adds if nothing is in between
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
-  void add(uint32_t owner, const Vec3f& origin, const Vec3f& direction, float distance,
-           MediumId medium, const Channels& radiance, bool is_rgb) {
-    shadows_.push_back({origin, direction, distance, medium, radiance, owner, is_rgb});
+  void add(uint32_t owner, const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
+           const MediaSet& media, const Channels& radiance, bool is_rgb) {
+    shadows_.push_back({origin, direction, end, media, radiance, owner, is_rgb});
   }
 
   /// Traces all rays, adds to their paths, and forgets them.
@@ -34,8 +36,8 @@ class ShadowTracer {
  private:
   struct Shadow {
     Vec3f origin, direction;
-    float distance;
-    MediumId medium;
+    ShadowEnd end;
+    MediaSet media;
     Channels radiance;
     uint32_t owner;
     bool is_rgb;
@@ -44,20 +46,16 @@ class ShadowTracer {
 
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
   void trace_surfaces(Shadow& shadow, const ScenePath& path);
-  void add_segment(Shadow& shadow, const ScenePath& path, MediumId medium, float begin, float end);
+  void add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media, float begin,
+                   float end);
 
   const PathScene& scene_;
+  const ColorFactory& factory_;
   std::vector<Channels> segments_;  // transmittances, ray after ray, each in the order of its way
   std::vector<uint32_t> owners_;    // of the segments
   WalkBatches batches_;
   FlightStream flights_;
   std::vector<Shadow> shadows_;
 };
-
-/// The medium beyond a shape, for a path that was in `before`.
-inline MediumId medium_beyond(const PathShape& shape, bool enters, MediumId before) {
-  if (shape.inside == shape.outside) return before;
-  return enters ? shape.inside : shape.outside;
-}
 
 }  // namespace freepath

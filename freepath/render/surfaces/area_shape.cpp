@@ -81,7 +81,7 @@ class AreaShape::TriangleKind : public Kind {
     if (!is_well_conditioned(seen)) return Kind::sample_from(from, triangle, u0, u1);
     const LocalRay ray{Vec3d(from), seen.sample(u0, u1)};
     const Vec3d normal = mesh_.plane_normal(triangle);
-    const Vec3d p = ray.origin + ray.direction * mesh_.distance(triangle, ray);
+    const Vec3d p = ray.origin + ray.direction * mesh_.meet_plane(triangle, ray).t;
     const std::size_t corner = std::size_t{3} * triangle;
     const Vec3d p0 = mesh_.position(corner);
     const Vec3d edge1 = mesh_.position(corner + 1) - p0;

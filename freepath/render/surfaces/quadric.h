@@ -37,6 +37,11 @@ class Quadric {
 
   QuadricKind kind() const { return kind_; }
   double radius() const { return radius_; }
+  /// Normal at a point of it, of any length but not 0, to the same side as QuadricPoint::normal.
+  Vec3d gradient(const Vec3d& point) const {
+    if (kind_ == QuadricKind::kDisk) return {0, 0, 1};
+    return {point.x, point.y, kind_ == QuadricKind::kSphere ? point.z : 0};
+  }
   /// Of any kind that is not cut: a whole sphere.
   bool is_whole_sphere() const {
     return kind_ == QuadricKind::kSphere && phi_max_ >= kFullTurn && z_min_ <= -radius_ &&

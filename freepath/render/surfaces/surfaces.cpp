@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -42,20 +43,15 @@ void BoundaryCrossings::clear() {
 void BoundaryCrossings::add(const BoundaryCrossing& crossing) {
   BoundaryCrossing* const begin = crossings_.data();
   BoundaryCrossing* const end = begin + count_;
-  BoundaryCrossing* const place = std::upper_bound(
-      begin, end, crossing.t, [](float t, const BoundaryCrossing& other) { return t < other.t; });
+  BoundaryCrossing* const place =
+      std::upper_bound(begin, end, crossing,
+                       [](const auto& a, const auto& b) { return a.place.is_before(b.place); });
   // Two triangles that share an edge may both claim a ray through it.
-  constexpr float kSamePlace = 1e-6F;
-  const float near = kSamePlace * crossing.t;
-  const auto is_same = [&](const BoundaryCrossing& other) {
-    return other.shape == crossing.shape && other.instance == crossing.instance &&
-           other.enters == crossing.enters;
-  };
-  for (auto* at = place; at != begin && crossing.t - (at - 1)->t <= near; --at) {
-    if (is_same(*(at - 1))) return;
+  for (auto* at = place; at != begin && (at - 1)->place.is_tied(crossing.place); --at) {
+    if ((at - 1)->is_same(crossing)) return;
   }
-  for (auto* at = place; at != end && at->t - crossing.t <= near; ++at) {
-    if (is_same(*at)) return;
+  for (auto* at = place; at != end && at->place.is_tied(crossing.place); ++at) {
+    if (at->is_same(crossing)) return;
   }
   if (count_ < kCapacity) {
     std::move_backward(place, end, end + 1);
@@ -72,18 +68,25 @@ class Surfaces::Data {
  public:
   Data(const SurfaceScene& scene, const Vec3d& ray_origin);
 
-  SurfaceQuery query(QueryKind kind, const Vec3f& origin, const Vec3f& direction,
-                     float t_min) const;
+  SurfaceQuery query(QueryKind kind, const Vec3f& origin, const Vec3f& direction, float t_min,
+                     double t_max) const;
   static RTCRay ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max);
-  SurfaceHit describe(const RTCRayHit& found, const LocalRay& ray) const;
+  SurfaceHit describe(const RayPlace& place, float u, float v, const LocalRay& ray) const;
+  const TracedPart& part_of(const SurfaceKey& key) const {
+    return key.instance == kNoInstance ? *world : *groups[rule.instances[key.instance].group];
+  }
+  std::optional<TracedPart::Met> meet(const SurfaceKey& key, const LocalRay& ray, double t) const {
+    return part_of(key).meet(key, rule.local_ray(ray, key.instance), t);
+  }
+  /// Sets where an occlusion query ends for what blocks.
+  void aim(SurfaceQuery& query, const ShadowEnd& end) const;
 
   Vec3d origin;
   DeviceHandle device;
   // Parts stay where they are: the scenes refer to their insides. They outlive the scenes.
   std::unique_ptr<const TracedPart> world;
   std::vector<std::unique_ptr<const TracedPart>> groups;
-  std::vector<TracedInstance> instances;
-  std::vector<float> smallest_offset;  // by SurfaceShape::shape
+  PlaceRule rule;
   std::vector<SceneHandle> group_scenes;
   SceneHandle scene;
 
@@ -124,7 +127,7 @@ void Surfaces::Data::add_instances(const SurfaceScene& description) {
   unsigned number = world->geometry_count();
   for (const SurfaceInstance& instance : description.instances) {
     if (instance.group >= groups.size()) {
-      fail("instance {} is of group {}, but there are only {} groups", instances.size(),
+      fail("instance {} is of group {}, but there are only {} groups", rule.instances.size(),
            instance.group, groups.size());
     }
     Matrix4d from_middle, to_origin;
@@ -132,10 +135,11 @@ void Surfaces::Data::add_instances(const SurfaceScene& description) {
     to_origin.setTranslation(-origin);
     const Matrix4d matrix = from_middle * instance.instance_to_world * to_origin;
     if (!(std::abs(matrix.determinant()) > 0)) {
-      fail("the transform of instance {} has no inverse; scale by nothing but 0", instances.size());
+      fail("the transform of instance {} has no inverse; scale by nothing but 0",
+           rule.instances.size());
     }
-    instances.push_back({instance.group, AffineMap(matrix), AffineMap(matrix.inverse())});
-    const AffineMap& map = instances.back().part_to_world;
+    rule.instances.push_back({instance.group, AffineMap(matrix), AffineMap(matrix.inverse())});
+    const AffineMap& map = rule.instances.back().part_to_world;
     note_offsets(*groups[instance.group], map);
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, group_scenes[instance.group].get());
@@ -165,19 +169,22 @@ void Surfaces::Data::note_offset(const TracedShape& shape, const Box3d& box,
     const Vec3d p = to_world.point(corner);
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
-  if (shape.shape >= smallest_offset.size()) smallest_offset.resize(shape.shape + std::size_t{1});
-  float& offset = smallest_offset[shape.shape];
+  rule.extent = std::max(rule.extent, largest);
+  std::vector<float>& offsets = rule.smallest_offset;
+  if (shape.shape >= offsets.size()) offsets.resize(shape.shape + std::size_t{1});
+  float& offset = offsets[shape.shape];
   offset = std::max(offset, static_cast<float>(largest * kRoundings));
 }
 
 SurfaceQuery Surfaces::Data::query(QueryKind kind, const Vec3f& ray_origin, const Vec3f& direction,
-                                   float t_min) const {
+                                   float t_min, double t_max) const {
   SurfaceQuery query{};
   rtcInitIntersectContext(&query.context);
   query.kind = kind;
   query.ray = {Vec3d(ray_origin), Vec3d(direction)};
   query.t_min = t_min;
-  query.instances = instances;
+  query.t_max = t_max;
+  query.rule = &rule;
   query.first_instance = world->geometry_count();
   return query;
 }
@@ -197,17 +204,16 @@ RTCRay Surfaces::Data::ray(const Vec3f& ray_origin, const Vec3f& direction, floa
   return ray;
 }
 
-SurfaceHit Surfaces::Data::describe(const RTCRayHit& found, const LocalRay& ray) const {
+SurfaceHit Surfaces::Data::describe(const RayPlace& place, float u, float v,
+                                    const LocalRay& ray) const {
   SurfaceHit hit;
-  TracedPart::Found at{};
-  if (found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-    at = world->find(found.hit, found.ray.tfar, ray);
-  } else {
-    hit.instance = found.hit.instID[0] - world->geometry_count();
-    const TracedInstance& instance = instances[hit.instance];
-    const LocalRay local{instance.world_to_part.point(ray.origin),
-                         instance.world_to_part.vector(ray.direction)};
-    at = groups[instance.group]->find(found.hit, found.ray.tfar, local);
+  hit.place = place;
+  hit.instance = place.key.instance;
+  const TracedPart& part = part_of(place.key);
+  TracedPart::Found at =
+      part.find(place.key, u, v, place.t, rule.local_ray(ray, place.key.instance));
+  if (hit.instance != kNoInstance) {
+    const TracedInstance& instance = rule.instances[hit.instance];
     at.point.position = instance.part_to_world.point(at.point.position);
     at.point.normal = instance.world_to_part.normal_back(at.point.normal);
     at.point.shading_normal = instance.world_to_part.normal_back(at.point.shading_normal);
@@ -226,11 +232,22 @@ SurfaceHit Surfaces::Data::describe(const RTCRayHit& found, const LocalRay& ray)
   hit.point.u = p.uv.x;
   hit.point.v = p.uv.y;
   hit.point.shape = at.shape->shape;
-  const bool is_quadric = found.hit.instID[0] == RTC_INVALID_GEOMETRY_ID
-                              ? world->is_quadric(found.hit.geomID)
-                              : groups[instances[hit.instance].group]->is_quadric(found.hit.geomID);
-  hit.point.primitive = at.shape->first_primitive + (is_quadric ? 0 : found.hit.primID);
+  const bool is_quadric = part.is_quadric(place.key.geometry);
+  hit.point.primitive = at.shape->first_primitive + (is_quadric ? 0 : place.key.primitive);
   return hit;
+}
+
+void Surfaces::Data::aim(SurfaceQuery& query, const ShadowEnd& end) const {
+  query.t_block = query.t_max;
+  if (!end.target) return;
+  query.target = world->find_primitive(end.target->shape, end.target->primitive);
+  if (!query.target) return;
+  const auto met = meet(*query.target, query.ray, end.distance);
+  if (!met || !(met->at.t > 0) || !std::isfinite(met->at.t)) return;
+  query.target->root = met->root;
+  query.t_max = met->at.t;
+  query.t_block =
+      met->at.t - rule.place(query.ray, met->at, *query.target, end.target->shape).reach;
 }
 
 Surfaces::Surfaces(const SurfaceScene& scene, const Vec3d& origin)
@@ -250,24 +267,94 @@ Box3f Surfaces::bounds() const {
 
 std::optional<SurfaceHit> Surfaces::intersect(const Vec3f& origin, const Vec3f& direction,
                                               float t_min, float t_max) const {
-  SurfaceQuery query = data_->query(QueryKind::kNearest, origin, direction, t_min);
+  SurfaceQuery query = data_->query(QueryKind::kNearest, origin, direction, t_min, t_max);
   RTCRayHit found{};
   found.ray = Data::ray(origin, direction, t_min, t_max);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(data_->scene.get(), &query.context, &found);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return data_->describe(found, query.ray);
+  SurfaceHit hit = data_->describe(query.nearest, found.hit.u, found.hit.v, query.ray);
+  hit.is_tied = query.is_tied;
+  return hit;
 }
 
-bool Surfaces::occluded(const Vec3f& origin, const Vec3f& direction, float t_max,
-                        BoundaryCrossings& crossings) const {
+void Surfaces::find_ties(const Vec3f& origin, const Vec3f& direction, const SurfaceHit& hit,
+                         std::vector<TiedSurface>& ties) const {
+  ties.clear();
+  SurfaceQuery query =
+      data_->query(QueryKind::kTies, origin, direction, 0, std::numeric_limits<double>::infinity());
+  query.around = &hit.place;
+  query.ties = &ties;
+  const auto met = data_->meet(hit.place.key, query.ray, hit.place.t);
+  const double range =
+      met ? data_->rule.search_range(query.ray, met->at, hit.place) : hit.place.reach;
+  RTCRay ray = Data::ray(origin, direction, static_cast<float>(std::max(hit.place.t - range, 0.0)),
+                         static_cast<float>(hit.place.t + range));
+  rtcOccluded1(data_->scene.get(), &query.context, &ray);
+  std::sort(ties.begin(), ties.end(),
+            [](const TiedSurface& a, const TiedSurface& b) { return a.place.is_before(b.place); });
+  std::size_t kept = 0;
+  for (const TiedSurface& tied : ties) {
+    const auto is_same = [&](uint32_t shape, uint32_t instance, bool enters) {
+      return tied.shape == shape && tied.place.key.instance == instance && tied.enters == enters;
+    };
+    bool is_known = is_same(hit.point.shape, hit.instance, !hit.from_inside);
+    for (std::size_t i = 0; i < kept && !is_known; ++i) {
+      is_known = is_same(ties[i].shape, ties[i].place.key.instance, ties[i].enters);
+    }
+    if (!is_known) ties[kept++] = tied;
+  }
+  ties.resize(kept);
+}
+
+SurfaceHit Surfaces::describe(const Vec3f& origin, const Vec3f& direction,
+                              const TiedSurface& tied) const {
+  SurfaceHit hit = data_->describe(tied.place, tied.u, tied.v, {Vec3d(origin), Vec3d(direction)});
+  hit.is_tied = true;
+  return hit;
+}
+
+bool Surfaces::is_beyond(const RayPlace& place, const Vec3f& origin, const Vec3f& direction) const {
+  const auto met = data_->meet(place.key, {Vec3d(origin), Vec3d(direction)}, 0);
+  return !met || !(met->at.t > 0);
+}
+
+bool Surfaces::occluded(const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
+                        BoundaryCrossings& crossings, const RayPlace* after) const {
   crossings.clear();
-  SurfaceQuery query = data_->query(QueryKind::kOcclusion, origin, direction, 0);
+  SurfaceQuery query =
+      data_->query(QueryKind::kOcclusion, origin, direction, 0, double{end.distance});
+  data_->aim(query, end);
+  query.after = after;
   query.crossings = &crossings;
-  RTCRay ray = Data::ray(origin, direction, 0, t_max);
+  // Embree's range is in single precision; what is in the query's, the query decides.
+  constexpr float kSinglePrecision = 1 + 0x1p-18F;
+  RTCRay ray = Data::ray(origin, direction, 0, static_cast<float>(query.t_max) * kSinglePrecision);
   rtcOccluded1(data_->scene.get(), &query.context, &ray);
   return ray.tfar < 0;
+}
+
+std::vector<BoundaryCrossing> Surfaces::all_crossings(const Vec3f& origin,
+                                                      const Vec3f& direction) const {
+  std::vector<BoundaryCrossing> all;
+  SurfaceQuery query =
+      data_->query(QueryKind::kAll, origin, direction, 0, std::numeric_limits<double>::infinity());
+  query.all = &all;
+  RTCRay ray = Data::ray(origin, direction, 0, std::numeric_limits<float>::infinity());
+  rtcOccluded1(data_->scene.get(), &query.context, &ray);
+  std::sort(all.begin(), all.end(), [](const BoundaryCrossing& a, const BoundaryCrossing& b) {
+    return a.place.is_before(b.place);
+  });
+  std::vector<BoundaryCrossing> each;
+  for (const BoundaryCrossing& crossing : all) {
+    bool is_known = false;
+    for (auto at = each.rbegin(); at != each.rend() && at->place.is_tied(crossing.place); ++at) {
+      is_known = is_known || at->is_same(crossing);
+    }
+    if (!is_known) each.push_back(crossing);
+  }
+  return each;
 }
 
 Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direction) const {
@@ -276,7 +363,7 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
   const Vec3f& n = point.normal;
   const Vec3f& p = point.position;
   const float error = std::abs(n.x * p.x) + std::abs(n.y * p.y) + std::abs(n.z * p.z);
-  const std::vector<float>& smallest = data_->smallest_offset;
+  const std::vector<float>& smallest = data_->rule.smallest_offset;
   const float offset =
       kRoundings * error + (point.shape < smallest.size() ? smallest[point.shape] : 0);
   return p + n * (n.dot(direction) < 0 ? -offset : offset);
@@ -285,7 +372,7 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
 bool Surfaces::intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const {
   const Box3d relative(box.min - data_->origin, box.max - data_->origin);
   if (part_meets_box(*data_->world, AffineMap(), AffineMap(), shapes, relative)) return true;
-  return std::any_of(data_->instances.begin(), data_->instances.end(),
+  return std::any_of(data_->rule.instances.begin(), data_->rule.instances.end(),
                      [&](const TracedInstance& instance) {
                        return part_meets_box(*data_->groups[instance.group], instance.part_to_world,
                                              instance.world_to_part, shapes, relative);
@@ -299,7 +386,8 @@ bool Surfaces::is_inside(const Vec3f& point, std::span<const uint32_t> shapes) c
                                                    Vec3f(0.2239F, -0.8623F, -0.4541F)};
   int votes = 0;
   for (const Vec3f& direction : kDirections) {
-    SurfaceQuery query = data_->query(QueryKind::kCount, point, direction, 0);
+    SurfaceQuery query = data_->query(QueryKind::kCount, point, direction, 0,
+                                      std::numeric_limits<double>::infinity());
     query.counted = shapes;
     RTCRay ray = Data::ray(point, direction, 0, std::numeric_limits<float>::infinity());
     rtcOccluded1(data_->scene.get(), &query.context, &ray);

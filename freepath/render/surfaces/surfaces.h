@@ -2,10 +2,12 @@
 /// @file The surfaces of a scene, to be met by rays.
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "freepath/base/vector.h"
 #include "freepath/render/surfaces/shape_geometry.h"
@@ -16,23 +18,58 @@ namespace freepath {
 /// SurfaceHit::instance of shapes that are in no group.
 inline constexpr uint32_t kNoInstance = 0xFFFFFFFF;
 
+/// Which intersection of a ray with all surfaces: the same for the same ray, whatever else there
+/// is.
+struct SurfaceKey {
+  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
+  uint32_t geometry = 0;            ///< Of what traces the shapes.
+  uint32_t primitive = 0;           ///< Of the geometry.
+  uint32_t root = 0;                ///< Which of the points where a line meets the primitive.
+
+  friend auto operator<=>(const SurfaceKey&, const SurfaceKey&) = default;
+};
+
+/// A place on a ray where a surface is met, in double precision.
+struct RayPlace {
+  double t = 0;  ///< position = origin + t direction
+  /// Surfaces no farther than this along the ray are at the same place [t]: a new ray from here may
+  /// start on either side of them, since positions in floats tell them apart no better.
+  double reach = 0;
+  SurfaceKey key;
+
+  /// In the order in which a ray meets them, which is strict.
+  bool is_before(const RayPlace& other) const {
+    return t < other.t || (t == other.t && key < other.key);
+  }
+  bool is_tied(const RayPlace& other) const {
+    const double gap = t < other.t ? other.t - t : t - other.t;
+    return gap <= reach || gap <= other.reach;
+  }
+};
+
 /// Where a ray meets a surface.
 struct SurfaceHit {
   float t = 0;  ///< position = origin + t direction
   SurfacePoint point;
   bool from_inside = false;         ///< The ray leaves the shape: direction · normal > 0.
   uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
+  RayPlace place;
+  bool is_tied = false;  ///< Another surface is at the same place; see Surfaces::find_ties.
 };
 
 /// Where a ray goes through a shape that is a mere boundary.
 struct BoundaryCrossing {
-  float t = 0;
+  RayPlace place;
   uint32_t shape = 0;
-  uint32_t instance = kNoInstance;
   bool enters = false;  ///< direction · normal < 0
+
+  bool is_same(const BoundaryCrossing& other) const {
+    return shape == other.shape && enters == other.enters &&
+           place.key.instance == other.place.key.instance && place.is_tied(other.place);
+  }
 };
 
-/// The nearest crossings of a ray in ascending order of t, each once even where the ray goes
+/// The nearest crossings of a ray in the order of their places, each once even where the ray goes
 /// through the common edge of two triangles.
 class BoundaryCrossings {
  public:
@@ -40,7 +77,7 @@ class BoundaryCrossings {
 
   std::span<const BoundaryCrossing> all() const { return {crossings_.data(), count_}; }
   bool empty() const { return count_ == 0; }
-  /// There are more, all of them beyond the last of these: go on with a ray from there.
+  /// There are more, all of them beyond the last of these.
   bool overflowed() const { return overflowed_; }
 
   void clear();
@@ -52,12 +89,32 @@ class BoundaryCrossings {
   bool overflowed_ = false;
 };
 
+/// A surface at the place of another.
+struct TiedSurface {
+  RayPlace place;
+  uint32_t shape = 0;
+  bool enters = false;  ///< direction · normal < 0
+  float u = 0, v = 0;   ///< Of the primitive; for Surfaces::describe.
+};
+
+/// Where a shadow ray ends.
+struct ShadowEnd {
+  float distance = 0;  ///< [t]
+  /// The point on a shape that it ends at, which is not in its own shadow, nor in that of a surface
+  /// at the same place; SurfacePoint::shape and primitive.
+  struct Target {
+    uint32_t shape = 0, primitive = 0;
+  };
+  std::optional<Target> target = {};
+};
+
 /// All surfaces of a scene. Positions are floats relative to `origin` of the constructor [world];
 /// directions need not be unit vectors, and t counts in their length. What is const may be called
 /// by any number of threads, and allocates nothing.
 ///
-/// Triangles are traced in floats and quadrics and patches in doubles; whether a hit lies beyond
-/// t_min is decided in doubles, for the surface as it was rounded to floats.
+/// Triangles are found in floats, quadrics and patches in doubles; where on the ray they are, and
+/// which is the nearest, is decided in doubles, for the surfaces as they were rounded to floats.
+/// Surfaces at one place are all met: find_ties() tells which are there.
 class Surfaces {
  public:
   /// @param origin that positions are relative to [world]: near what is seen
@@ -74,10 +131,26 @@ class Surfaces {
   /// The nearest surface at t in (t_min, t_max), boundaries included.
   std::optional<SurfaceHit> intersect(const Vec3f& origin, const Vec3f& direction, float t_min,
                                       float t_max) const;
-  /// Whether any shape but boundaries is met at t in (0, t_max). If none is, `crossings` are those
+  /// All other surfaces at the place where a ray meets one, in the order of their places, each once
+  /// even on the common edge of two triangles. `ties` is overwritten.
+  /// @param hit of this ray
+  void find_ties(const Vec3f& origin, const Vec3f& direction, const SurfaceHit& hit,
+                 std::vector<TiedSurface>& ties) const;
+  /// A tied surface as if the ray had met it alone.
+  SurfaceHit describe(const Vec3f& origin, const Vec3f& direction, const TiedSurface& tied) const;
+  /// Whether a ray from a point near the place, in the direction of the ray that met it there,
+  /// starts beyond the surface, so that it won't meet it (again).
+  bool is_beyond(const RayPlace& place, const Vec3f& origin, const Vec3f& direction) const;
+
+  /// Whether any shape but boundaries is met at t in (0, end). If none is, `crossings` are those
   /// of the boundaries; otherwise they are of no use.
-  bool occluded(const Vec3f& origin, const Vec3f& direction, float t_max,
-                BoundaryCrossings& crossings) const;
+  /// @param after crossings up to this one are left out: the last of those that overflowed
+  bool occluded(const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
+                BoundaryCrossings& crossings, const RayPlace* after = nullptr) const;
+
+  /// All surfaces on a ray in the order of their places, whatever they are made of, each once even
+  /// on the common edge of two triangles. Allocates: for the time of loading.
+  std::vector<BoundaryCrossing> all_crossings(const Vec3f& origin, const Vec3f& direction) const;
 
   /// Where a ray starts that leaves a point of these surfaces, so that it does not meet the same
   /// place again: off the surface along its normal, to the side of the direction, by a few

@@ -19,87 +19,165 @@ const RTCHit& hit_of(const RTCFilterFunctionNArguments* args) {
   return *reinterpret_cast<const RTCHit*>(args->hit);
 }
 
-/// Refuses hits of triangles that are not there in double precision.
-void filter_nearest(const RTCFilterFunctionNArguments* args) {
-  const SurfaceQuery& query = query_of(args->context);
-  const RTCHit& hit = hit_of(args);
-  const auto& mesh = *static_cast<const TracedTriangles*>(args->geometryUserPtr);
-  const double t = mesh.distance(hit.primID, query.local_ray(hit.instID[0]));
-  if (!(t > query.t_min)) args->valid[0] = 0;
+/// Adds a surface to what a query of several collects.
+template <class Enters>
+void collect(SurfaceQuery& query, const TracedShape& shape, const RayPlace& place, float u, float v,
+             const Enters& enters) {
+  if (query.kind == QueryKind::kAll) {
+    query.all->push_back({place, shape.shape, enters()});
+  } else if (place.key != query.around->key && place.is_tied(*query.around)) {
+    query.ties->push_back({place, shape.shape, enters(), u, v});
+  }
 }
 
-/// Notes boundaries and lets the ray go on.
-void filter_occlusion(const RTCFilterFunctionNArguments* args) {
+/// Whether an occlusion query ends at a surface; crossings are noted.
+template <class Enters>
+bool blocks(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at,
+            const SurfaceKey& key, const Enters& enters) {
+  if (!shape.is_boundary) return at.t < query.t_block && key != query.target;
+  const RayPlace place = query.rule->place(query.ray, at, key, shape.shape);
+  if (query.after == nullptr || query.after->is_before(place)) {
+    query.crossings->add({place, shape.shape, enters()});
+  }
+  return false;
+}
+
+/// Whether a surface is the nearest so far.
+bool is_nearest(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at,
+                const SurfaceKey& key, float& t_far) {
+  const RayPlace place = query.rule->place(query.ray, at, key, shape.shape);
+  const bool is_tied = place.is_tied(query.nearest);
+  if (!place.is_before(query.nearest)) {
+    if (place.key != query.nearest.key) query.is_tied = query.is_tied || is_tied;
+    return false;
+  }
+  query.is_tied = is_tied;
+  query.nearest = place;
+  // What is at the same place has to be offered, too.
+  t_far = static_cast<float>(
+      std::min(place.t + query.rule->search_range(query.ray, at, place), query.t_max));
+  return true;
+}
+
+/// Takes a surface into account.
+/// @param enters tells whether the ray goes to the inside there
+/// @param t_far of the ray, which ends there for the time being
+/// @return whether the ray is to end there
+template <class Enters>
+bool meet(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at, const SurfaceKey& key,
+          float u, float v, float& t_far, const Enters& enters) {
+  if (!(at.t > query.t_min && at.t < query.t_max)) return false;
+  switch (query.kind) {
+    case QueryKind::kNearest:
+      return is_nearest(query, shape, at, key, t_far);
+    case QueryKind::kOcclusion:
+      return blocks(query, shape, at, key, enters);
+    case QueryKind::kCount:
+      if (std::find(query.counted.begin(), query.counted.end(), shape.shape) !=
+          query.counted.end()) {
+        ++query.count;
+      }
+      return false;
+    case QueryKind::kTies:
+    case QueryKind::kAll:
+      collect(query, shape, query.rule->place(query.ray, at, key, shape.shape), u, v, enters);
+      return false;
+  }
+  return false;
+}
+
+void filter_triangle(const RTCFilterFunctionNArguments* args) {
   SurfaceQuery& query = query_of(args->context);
   const RTCHit& hit = hit_of(args);
   const auto& mesh = *static_cast<const TracedTriangles*>(args->geometryUserPtr);
-  const LocalRay ray = query.local_ray(hit.instID[0]);
-  const double t = mesh.distance(hit.primID, ray);
-  if (!(t > query.t_min)) {
-    args->valid[0] = 0;
-    return;
-  }
-  const bool enters = mesh.normal(hit.primID, hit.u, hit.v).dot(ray.direction) < 0;
-  if (!query.meet(mesh, t, enters, hit.instID[0])) args->valid[0] = 0;
+  const SurfaceKey key{query.instance_of(hit.instID[0]), hit.geomID, hit.primID, 0};
+  const LocalRay local = query.rule->local_ray(query.ray, key.instance);
+  const LinePoint at = mesh.meet_plane(hit.primID, local);
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  const auto enters = [&] {
+    return mesh.normal(hit.primID, hit.u, hit.v).dot(local.direction) < 0;
+  };
+  if (!meet(query, mesh, at, key, hit.u, hit.v, ray.tfar, enters)) args->valid[0] = 0;
 }
 
+/// Of a primitive that Embree does not know: what lies on the ray, in ascending order.
 struct UserHit {
-  double t;
+  LinePoint at;
+  uint32_t root;
   float u, v;
 };
 
-/// Of each hit in the range of the ray: keeps the nearest, or notes it.
-/// @param normal_at gives the outward normal of a hit, in the space of `ray`
-template <class NormalAt>
-void offer(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const TracedShape& shape,
-           unsigned geometry, unsigned primitive, std::span<const UserHit> found,
-           const LocalRay& local, NormalAt normal_at) {
+void offer(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const TracedShape& shape, SurfaceKey key,
+           std::span<const UserHit> found) {
   for (const UserHit& candidate : found) {
-    if (!(candidate.t > query.t_min && candidate.t < ray.tfar)) continue;
-    if (query.kind == QueryKind::kNearest) {
-      ray.tfar = static_cast<float>(candidate.t);
-      hit->u = candidate.u;
-      hit->v = candidate.v;
-      hit->geomID = geometry;
-      hit->primID = primitive;
-      hit->instID[0] = query.context.instID[0];
-      return;  // they come in order
-    }
-    const bool enters = normal_at(candidate).dot(local.direction) < 0;
-    if (query.meet(shape, candidate.t, enters, query.context.instID[0])) {
+    key.root = candidate.root;
+    const auto enters = [&] { return candidate.at.across < 0; };
+    float t_far = ray.tfar;
+    if (!meet(query, shape, candidate.at, key, candidate.u, candidate.v, t_far, enters)) continue;
+    if (query.kind != QueryKind::kNearest) {
       ray.tfar = -std::numeric_limits<float>::infinity();
       return;
     }
+    ray.tfar = t_far;
+    hit->u = candidate.u;
+    hit->v = candidate.v;
+    hit->geomID = key.geometry;
+    hit->primID = key.primitive;
+    hit->instID[0] = query.context.instID[0];
   }
+}
+
+struct UserHits {
+  std::array<UserHit, 2> hits{};
+  std::size_t count = 0;
+  std::span<const UserHit> all() const { return {hits.data(), count}; }
+};
+
+UserHits hits_of(const TracedPatches& mesh, uint32_t primitive, const LocalRay& ray) {
+  const PatchRoots roots = mesh.patch(primitive).intersect(ray.origin, ray.direction);
+  UserHits found;
+  for (int i = 0; i < roots.count; ++i) {
+    const PatchRoot& root = roots.root[i];
+    const Vec3d normal = mesh.normal(primitive, root.u, root.v);
+    found.hits[found.count++] = {{root.t, normal, normal.dot(ray.direction)},
+                                 static_cast<uint32_t>(i),
+                                 static_cast<float>(root.u),
+                                 static_cast<float>(root.v)};
+  }
+  return found;
+}
+
+UserHits hits_of(const TracedQuadric& quadric, const LocalRay& ray) {
+  const LocalRay object = quadric.to_object(ray);
+  const QuadricRoots roots = quadric.quadric.intersect(object.origin, object.direction);
+  UserHits found;
+  for (int i = 0; i < roots.count; ++i) {
+    const Vec3d gradient = quadric.quadric.gradient(object.origin + object.direction * roots.t[i]);
+    const Vec3d normal =
+        quadric.part_to_object.normal_back(quadric.is_reversed ? -gradient : gradient);
+    // A line goes in first and then out.
+    const bool leaves = gradient.dot(object.direction) > 0;
+    const bool has_inside = quadric.quadric.kind() != QuadricKind::kDisk;
+    found.hits[found.count++] = {
+        {roots.t[i], normal, normal.dot(ray.direction)}, has_inside && leaves ? 1U : 0U, 0, 0};
+  }
+  return found;
 }
 
 void meet_patch(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user, unsigned geometry,
                 unsigned primitive) {
   const auto& mesh = *static_cast<const TracedPatches*>(user);
-  const LocalRay local = query.local_ray(query.context.instID[0]);
-  const PatchRoots roots = mesh.patch(primitive).intersect(local.origin, local.direction);
-  std::array<UserHit, 2> found{};
-  for (int i = 0; i < roots.count; ++i) {
-    found[i] = {roots.root[i].t, static_cast<float>(roots.root[i].u),
-                static_cast<float>(roots.root[i].v)};
-  }
-  offer(ray, hit, query, mesh, geometry, primitive,
-        {found.data(), static_cast<std::size_t>(roots.count)}, local,
-        [&](const UserHit& at) { return mesh.normal(primitive, at.u, at.v); });
+  const SurfaceKey key{query.instance_of(query.context.instID[0]), geometry, primitive, 0};
+  const LocalRay local = query.rule->local_ray(query.ray, key.instance);
+  offer(ray, hit, query, mesh, key, hits_of(mesh, primitive, local).all());
 }
 
 void meet_quadric(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user,
                   unsigned geometry, unsigned primitive) {
   const TracedQuadric& quadric = (*static_cast<const std::vector<TracedQuadric>*>(user))[primitive];
-  const LocalRay local = query.local_ray(query.context.instID[0]);
-  const LocalRay object = quadric.to_object(local);
-  const QuadricRoots roots = quadric.quadric.intersect(object.origin, object.direction);
-  std::array<UserHit, 2> found{};
-  for (int i = 0; i < roots.count; ++i) found[i] = {roots.t[i], 0, 0};
-  offer(ray, hit, query, quadric, geometry, primitive,
-        {found.data(), static_cast<std::size_t>(roots.count)}, local, [&](const UserHit& at) {
-          return quadric.describe(object.origin + object.direction * at.t).normal;
-        });
+  const SurfaceKey key{query.instance_of(query.context.instID[0]), geometry, primitive, 0};
+  const LocalRay local = query.rule->local_ray(query.ray, key.instance);
+  offer(ray, hit, query, quadric, key, hits_of(quadric, local).all());
 }
 
 template <auto kMeet>
@@ -173,18 +251,34 @@ RTCBounds rounded_outward(const Box3d& box) {
   return {low.x, low.y, low.z, 0, high.x, high.y, high.z, 0};
 }
 
-bool SurfaceQuery::meet(const TracedShape& shape, double t, bool enters,
-                        unsigned instance_geometry) {
-  if (kind == QueryKind::kCount) {
-    if (std::find(counted.begin(), counted.end(), shape.shape) != counted.end()) ++count;
-    return false;
+RayPlace PlaceRule::place(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
+                          uint32_t shape) const {
+  // A new ray begins at most six roundings of the position off the surface: see
+  // Surfaces::offset_ray_origin().
+  constexpr double kRoundings = 8 * 0x1p-24;
+  const Vec3d normal = world_normal(at.normal, key.instance);
+  const Vec3d position = world.origin + world.direction * at.t;
+  double error = 0;
+  double length = 0;  // no less than the normal's
+  for (int axis = 0; axis < 3; ++axis) {
+    error += std::abs(normal[axis] * position[axis]);
+    length += std::abs(normal[axis]);
   }
-  if (!shape.is_boundary) return true;
-  const uint32_t instance = instance_geometry == RTC_INVALID_GEOMETRY_ID
-                                ? kNoInstance
-                                : instance_geometry - first_instance;
-  crossings->add({static_cast<float>(t), shape.shape, instance, enters});
-  return false;
+  const double reach = kRoundings * error + 2 * length * smallest_offset[shape];
+  return {at.t, reach / std::abs(at.across), key};
+}
+
+double PlaceRule::search_range(const LocalRay& world, const LinePoint& at,
+                               const RayPlace& place) const {
+  constexpr double kSinglePrecision = 0x1p-20;
+  const Vec3d normal = world_normal(at.normal, place.key.instance);
+  double length = 0;
+  double largest = extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    length += std::abs(normal[axis]);
+    largest = std::max(largest, std::abs(world.origin[axis]));
+  }
+  return place.reach + kSinglePrecision * largest * length / std::abs(at.across);
 }
 
 TracedPart::TracedPart(std::span<const SurfaceShape> shapes, const Vec3d& part_origin)
@@ -198,6 +292,10 @@ TracedPart::TracedPart(std::span<const SurfaceShape> shapes, const Vec3d& part_o
       quadrics.push_back(trace_quadric(shape, origin));
     }
   }
+  uint32_t geometry = 0;
+  for (const TracedTriangles& mesh : triangles) note(mesh, {geometry++, 0, mesh.count()});
+  for (const TracedPatches& mesh : patches) note(mesh, {geometry++, 0, mesh.count()});
+  for (uint32_t i = 0; i < quadrics.size(); ++i) note(quadrics[i], {geometry, i, 1});
 }
 
 void TracedPart::attach(RTCDevice device, RTCScene scene) const {
@@ -209,8 +307,8 @@ void TracedPart::attach(RTCDevice device, RTCScene scene) const {
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                mesh.indices.data(), 0, 3 * sizeof(uint32_t), mesh.count());
     rtcSetGeometryUserData(geometry, const_cast<TracedTriangles*>(&mesh));
-    rtcSetGeometryIntersectFilterFunction(geometry, filter_nearest);
-    rtcSetGeometryOccludedFilterFunction(geometry, filter_occlusion);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
     hand_over(scene, geometry, number++);
   }
   for (const TracedPatches& mesh : patches) {
@@ -222,24 +320,50 @@ void TracedPart::attach(RTCDevice device, RTCScene scene) const {
   }
 }
 
-TracedPart::Found TracedPart::find(const RTCHit& hit, float t, const LocalRay& ray) const {
-  std::size_t number = hit.geomID;
+TracedPart::Found TracedPart::find(const SurfaceKey& key, float u, float v, double t,
+                                   const LocalRay& ray) const {
+  std::size_t number = key.geometry;
   if (number < triangles.size()) {
     const TracedTriangles& mesh = triangles[number];
-    return {&mesh, mesh.describe(hit.primID, hit.u, hit.v, ray)};
+    return {&mesh, mesh.describe(key.primitive, u, v, ray)};
   }
   number -= triangles.size();
   if (number < patches.size()) {
     const TracedPatches& mesh = patches[number];
-    return {&mesh, mesh.describe(hit.primID, hit.u, hit.v)};
+    return {&mesh, mesh.describe(key.primitive, u, v)};
   }
-  // The t of the hit has lost digits; the root next to it has them.
-  const TracedQuadric& quadric = quadrics[hit.primID];
+  const TracedQuadric& quadric = quadrics[key.primitive];
   const LocalRay object = quadric.to_object(ray);
-  const QuadricRoots roots = quadric.quadric.intersect(object.origin, object.direction);
-  double nearest = roots.t[0];
-  if (roots.count == 2 && std::abs(roots.t[1] - t) < std::abs(nearest - t)) nearest = roots.t[1];
-  return {&quadric, quadric.describe(object.origin + object.direction * nearest)};
+  return {&quadric, quadric.describe(object.origin + object.direction * t)};
+}
+
+std::optional<TracedPart::Met> TracedPart::meet(const SurfaceKey& key, const LocalRay& ray,
+                                                double t) const {
+  if (key.geometry < triangles.size()) {
+    return Met{triangles[key.geometry].meet_plane(key.primitive, ray), 0};
+  }
+  const bool quadric = is_quadric(key.geometry);
+  const UserHits found =
+      quadric ? hits_of(quadrics[key.primitive], ray)
+              : hits_of(patches[key.geometry - triangles.size()], key.primitive, ray);
+  std::optional<Met> nearest;
+  for (const UserHit& hit : found.all()) {
+    if (quadric && key.root != kAnyRoot && hit.root != key.root) continue;
+    if (!nearest || std::abs(hit.at.t - t) < std::abs(nearest->at.t - t)) {
+      nearest = Met{hit.at, hit.root};
+    }
+  }
+  return nearest;
+}
+
+std::optional<SurfaceKey> TracedPart::find_primitive(uint32_t shape, uint32_t primitive) const {
+  auto found = primitives_.upper_bound({shape, primitive});
+  if (found == primitives_.begin()) return std::nullopt;
+  --found;
+  const uint32_t number = primitive - found->first.second;
+  const Primitives& primitives = found->second;
+  if (found->first.first != shape || number >= primitives.count) return std::nullopt;
+  return SurfaceKey{kNoInstance, primitives.geometry, primitives.first + number, kAnyRoot};
 }
 
 }  // namespace freepath

@@ -5,9 +5,13 @@
 #include <embree3/rtcore.h>
 
 #include <cstdint>
+#include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "freepath/base/vector.h"
@@ -34,29 +38,59 @@ struct TracedInstance {
   AffineMap part_to_world, world_to_part;
 };
 
-enum class QueryKind { kNearest, kOcclusion, kCount };
+enum class QueryKind { kNearest, kOcclusion, kCount, kTies, kAll };
+
+/// What the places of all rays of a scene depend on.
+struct PlaceRule {
+  std::vector<TracedInstance> instances;
+  std::vector<float> smallest_offset;  ///< By SurfaceShape::shape.
+  double extent = 0;                   ///< Largest coordinate of anything [world, from the origin].
+
+  /// @param at,key of a point where the ray meets a surface of the shape
+  RayPlace place(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
+                 uint32_t shape) const;
+  /// How far from its place single precision may find a surface that faces the same way [t].
+  double search_range(const LocalRay& world, const LinePoint& at, const RayPlace& place) const;
+  /// The ray in the space of what a key is of.
+  LocalRay local_ray(const LocalRay& world, uint32_t instance) const {
+    if (instance == kNoInstance) return world;
+    const AffineMap& map = instances[instance].world_to_part;
+    return {map.point(world.origin), map.vector(world.direction)};
+  }
+
+ private:
+  Vec3d world_normal(const Vec3d& normal, uint32_t instance) const {
+    return instance == kNoInstance ? normal : instances[instance].world_to_part.normal_back(normal);
+  }
+};
 
 /// One ray on its way. The first member is what Embree knows of it, and hands to the callbacks.
 struct SurfaceQuery {
   RTCIntersectContext context;
   QueryKind kind;
   LocalRay ray;  ///< In the world, relative to the origin of rays.
-  double t_min;
-  std::span<const TracedInstance> instances;
-  unsigned first_instance;                 ///< Geometry number of the first instance.
-  BoundaryCrossings* crossings = nullptr;  ///< For kOcclusion.
-  std::span<const uint32_t> counted = {};  ///< For kCount: the shapes.
+  double t_min, t_max;
+  const PlaceRule* rule;
+  unsigned first_instance;  ///< Geometry number of the first instance.
+
+  RayPlace nearest = {std::numeric_limits<double>::infinity(), 0, {}};  ///< Of kNearest.
+  bool is_tied = false;
+
+  double t_block = 0;                     ///< Of kOcclusion: only what is nearer blocks,
+  std::optional<SurfaceKey> target = {};  ///< and never this.
+  const RayPlace* after = nullptr;        ///< Crossings up to there are left out.
+  BoundaryCrossings* crossings = nullptr;
+
+  const RayPlace* around = nullptr;  ///< Of kTies.
+  std::vector<TiedSurface>* ties = nullptr;
+  std::vector<BoundaryCrossing>* all = nullptr;  ///< Of kAll.
+  std::span<const uint32_t> counted = {};        ///< Of kCount: the shapes.
   uint32_t count = 0;
 
-  /// The ray in the space of the geometry that a callback is about.
-  LocalRay local_ray(unsigned instance_geometry) const {
-    if (instance_geometry == RTC_INVALID_GEOMETRY_ID) return ray;
-    const AffineMap& map = instances[instance_geometry - first_instance].world_to_part;
-    return {map.point(ray.origin), map.vector(ray.direction)};
+  uint32_t instance_of(unsigned instance_geometry) const {
+    return instance_geometry == RTC_INVALID_GEOMETRY_ID ? kNoInstance
+                                                        : instance_geometry - first_instance;
   }
-  /// Notes a hit of an occlusion or counting query.
-  /// @return whether it blocks the ray
-  bool meet(const TracedShape& shape, double t, bool enters, unsigned instance_geometry);
 };
 
 /// Shapes of one space. Geometry numbers: one for each mesh of triangles, then one for each mesh of
@@ -80,12 +114,37 @@ class TracedPart {
     const TracedShape* shape;
     LocalPoint point;
   };
-  Found find(const RTCHit& hit, float t, const LocalRay& ray) const;
+  /// @param u,v of the primitive
+  /// @param t of the ray, which is in the space of the part
+  Found find(const SurfaceKey& key, float u, float v, double t, const LocalRay& ray) const;
+
+  struct Met {
+    LinePoint at;
+    uint32_t root = 0;
+  };
+  /// Where the line of a ray meets the key's root of a primitive; of patches, or of kAnyRoot, the
+  /// one nearest to t.
+  /// @return nothing where it misses a curved one; triangles count as their planes
+  std::optional<Met> meet(const SurfaceKey& key, const LocalRay& ray, double t) const;
+  /// The key of a primitive of a shape, of kAnyRoot, if it is here.
+  std::optional<SurfaceKey> find_primitive(uint32_t shape, uint32_t primitive) const;
+
+  static constexpr uint32_t kAnyRoot = 0xFFFFFFFF;
 
   Vec3d origin;
   std::vector<TracedTriangles> triangles;
   std::vector<TracedPatches> patches;
   std::vector<TracedQuadric> quadrics;
+
+ private:
+  struct Primitives {
+    uint32_t geometry, first, count;
+  };
+  void note(const TracedShape& shape, const Primitives& primitives) {
+    primitives_[{shape.shape, shape.first_primitive}] = primitives;
+  }
+
+  std::map<std::pair<uint32_t, uint32_t>, Primitives> primitives_;  // by shape and first primitive
 };
 
 /// A box around shapes that is not cut off by its rounding to floats.

@@ -71,9 +71,12 @@ Vec3d TracedTriangles::normal(uint32_t triangle, float u, float v) const {
   return flip ? -flat : flat;
 }
 
-double TracedTriangles::distance(uint32_t triangle, const LocalRay& ray) const {
-  const Vec3d normal = plane_normal(triangle);
-  return normal.dot(position(std::size_t{3} * triangle) - ray.origin) / normal.dot(ray.direction);
+LinePoint TracedTriangles::meet_plane(uint32_t triangle, const LocalRay& ray) const {
+  LinePoint point;
+  point.normal = plane_normal(triangle);
+  point.across = point.normal.dot(ray.direction);
+  point.t = point.normal.dot(position(std::size_t{3} * triangle) - ray.origin) / point.across;
+  return point;
 }
 
 LocalPoint TracedTriangles::describe(uint32_t triangle, float u, float v,

@@ -29,6 +29,13 @@ struct LocalPoint {
   Vec2f uv;
 };
 
+/// Where a line meets a surface.
+struct LinePoint {
+  double t = 0;       ///< Not finite where the surface is parallel to the line.
+  Vec3d normal{0};    ///< Of any length, to either side [part].
+  double across = 0;  ///< normal · direction
+};
+
 /// What all kinds share.
 struct TracedShape {
   uint32_t shape = 0;
@@ -56,8 +63,8 @@ struct TracedTriangles : TracedVertices {
   /// To the outside at these barycentric coordinates of the second and third corner.
   Vec3d normal(uint32_t triangle, float u, float v) const;
   /// Where a line meets the plane of a triangle. In doubles, so that a ray that starts a few
-  /// roundings off the plane never meets it again. Not finite where they are parallel.
-  double distance(uint32_t triangle, const LocalRay& ray) const;
+  /// roundings off the plane never meets it again.
+  LinePoint meet_plane(uint32_t triangle, const LocalRay& ray) const;
   LocalPoint describe(uint32_t triangle, float u, float v) const;
   /// With the position on the ray, if it does not graze the triangle: that has more digits than the
   /// barycentric coordinates.

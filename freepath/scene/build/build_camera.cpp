@@ -351,7 +351,7 @@ void build_camera(BuildContext& context, const FilmSize& size) {
   context.scene.camera = at_location(camera.location, [&] {
     return SceneCamera(model, camera.camera_from_world.start.inverse(), size.width, size.height);
   });
-  context.scene.camera_medium = medium_of(context, camera.medium);
+  context.scene.camera_media.add(medium_of(context, camera.medium), 1);
 }
 
 }  // namespace freepath

@@ -36,7 +36,7 @@ struct FilmSize {
 /// @throws Error with file:line:column
 PictureSettings build_picture(BuildContext& context, FilmSize& size);
 
-/// Fills PathScene::camera, camera_medium and filter. Media have to be named already.
+/// Fills PathScene::camera, camera_media and filter. Media have to be named already.
 /// @throws Error with file:line:column
 void build_camera(BuildContext& context, const FilmSize& size);
 

@@ -1,6 +1,7 @@
 #include "freepath/scene/build/region_simplifier.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,38 @@ Box3d reach_of(const SceneMedium& medium) {
   return {box.min - half, box.max + half};
 }
 
+/// How often a ray has to have entered each medium before it starts at a point, if it is never to
+/// leave what it has not entered: as the boundaries around the point say, by the middle of three
+/// rays for those that are not closed.
+MediaSet media_at(const Surfaces& surfaces, const std::vector<PathShape>& shapes, std::size_t media,
+                  const Vec3f& point) {
+  // Along no edge of anything that is built along axes or diagonals.
+  static const std::array<Vec3f, 3> kDirections = {Vec3f(0.5377F, 0.6211F, 0.5703F),
+                                                   Vec3f(-0.7321F, 0.3187F, -0.6021F),
+                                                   Vec3f(0.2239F, -0.8623F, -0.4541F)};
+  std::vector<std::array<int32_t, 3>> needed(media);
+  for (std::size_t ray = 0; ray < kDirections.size(); ++ray) {
+    std::vector<int32_t> count(media);
+    const auto add = [&](MediumId medium, int32_t number) {
+      if (medium == kVacuum) return;
+      count[medium] += number;
+      needed[medium][ray] = std::max(needed[medium][ray], -count[medium]);
+    };
+    for (const BoundaryCrossing& crossing : surfaces.all_crossings(point, kDirections[ray])) {
+      const PathShape& shape = shapes[crossing.shape];
+      if (shape.inside == shape.outside) continue;
+      add(crossing.enters ? shape.inside : shape.outside, 1);
+      add(crossing.enters ? shape.outside : shape.inside, -1);
+    }
+  }
+  MediaSet set;
+  for (std::size_t medium = 0; medium < media; ++medium) {
+    std::sort(needed[medium].begin(), needed[medium].end());
+    set.add(static_cast<MediumId>(medium), needed[medium][1]);
+  }
+  return set;
+}
+
 class Simplifier {
  public:
   Simplifier(SurfaceScene& surfaces, PathScene& scene) : surfaces_(surfaces), scene_(scene) {
@@ -31,23 +64,43 @@ class Simplifier {
   /// The medium whose boundary can go, if any.
   void run() {
     scene_.is_clear.assign(scene_.media.size(), false);
+    if (scene_.media.empty()) return;
     const Surfaces traced(surfaces_, scene_.origin);
+    add_media_around_camera(traced);
     for (MediumId id = 0; id < static_cast<MediumId>(scene_.media.size()); ++id) {
       const Box3d reach = reach_of(scene_.media[id]);
       if (traced.intersects_box(all_, reach)) continue;
       std::vector<uint32_t> boundary;
       if (!find_boundary(id, boundary)) continue;
-      if (scene_.camera_medium != id && scene_.camera_medium != kVacuum) continue;
       const Vec3f center(reach.center() - scene_.origin);
-      if (boundary.empty() ? scene_.camera_medium != id : !traced.is_inside(center, boundary)) {
-        continue;
-      }
+      const bool is_around = scene_.camera_media.count(id) > 0;
+      if (boundary.empty() ? !is_around : !traced.is_inside(center, boundary)) continue;
+      if (has_others(id, scene_.camera_media)) continue;
+      if (has_others(id, media_at(traced, scene_.shapes, scene_.media.size(), center))) continue;
       dissolve(id);
       return;
     }
   }
 
  private:
+  /// To the camera's own medium, which need not have a boundary.
+  void add_media_around_camera(const Surfaces& traced) {
+    const float x = 0.5F * static_cast<float>(scene_.camera->width());
+    const float y = 0.5F * static_cast<float>(scene_.camera->height());
+    const Vec3f eye(scene_.camera->ray(x, y, 0.5F, 0.5F).origin - scene_.origin);
+    const MediaSet around = media_at(traced, scene_.shapes, scene_.media.size(), eye);
+    for (const MediaSet::Entry& entry : around.entries()) {
+      scene_.camera_media.add(
+          entry.medium,
+          entry.count - std::min(entry.count, scene_.camera_media.count(entry.medium)));
+    }
+  }
+
+  static bool has_others(MediumId id, const MediaSet& media) {
+    return std::any_of(media.entries().begin(), media.entries().end(),
+                       [&](const MediaSet::Entry& entry) { return entry.medium != id; });
+  }
+
   /// The shapes around a medium, if they are mere boundaries to vacuum.
   bool find_boundary(MediumId id, std::vector<uint32_t>& boundary) const {
     for (const uint32_t shape : all_) {
@@ -76,7 +129,8 @@ class Simplifier {
       shape.inside = filled(shape.inside);
       shape.outside = filled(shape.outside);
     }
-    scene_.camera_medium = filled(scene_.camera_medium);
+    scene_.camera_media = MediaSet();
+    scene_.camera_media.add(id, 1);
     const auto is_useless = [&](const SurfaceShape& shape) {
       const PathShape& sides = scene_.shapes[shape.shape];
       return shape.is_boundary && sides.inside == id && sides.outside == id;

@@ -1,0 +1,83 @@
+#pragma once
+/// @file The media that fill a place.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+
+/// A medium of PathScene::media, or none. Those beyond are combinations: see MediaCombinations.
+using MediumId = int32_t;
+inline constexpr MediumId kVacuum = -1;
+
+/// The media at a place, as a path keeps them: how often each has been entered and not left. A
+/// medium is there where its number is above 0.
+///
+/// A boundary with M inside and N outside adds one to M and takes one from N on the way in, and the
+/// other way round on the way out, vacuum having no number. So what is at a place does not depend
+/// on the way there, nor on the order in which boundaries at one distance are crossed: nested media
+/// replace each other where their boundaries say so, and others overlap.
+class MediaSet {
+ public:
+  static constexpr int kCapacity = 8;
+
+  struct Entry {
+    MediumId medium = kVacuum;
+    int32_t count = 0;
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+
+  /// Those whose number is not 0, by medium.
+  std::span<const Entry> entries() const { return {entries_.data(), size_}; }
+
+  /// @throws Error where there are more media at once than it holds
+  void add(MediumId medium, int32_t count) {
+    if (medium == kVacuum || count == 0) return;
+    uint32_t place = 0;
+    while (place < size_ && entries_[place].medium < medium) ++place;
+    if (place < size_ && entries_[place].medium == medium) {
+      entries_[place].count += count;
+      if (entries_[place].count == 0) {
+        for (--size_; place < size_; ++place) entries_[place] = entries_[place + 1];
+      }
+      return;
+    }
+    if (size_ == kCapacity) {
+      fail("more than {} media overlap at one place; make boundaries name what is around them",
+           kCapacity);
+    }
+    for (uint32_t i = size_++; i > place; --i) entries_[i] = entries_[i - 1];
+    entries_[place] = {medium, count};
+  }
+
+  /// Crosses a boundary.
+  void cross(MediumId inside, MediumId outside, bool enters) {
+    if (inside == outside) return;
+    add(enters ? inside : outside, 1);
+    add(enters ? outside : inside, -1);
+  }
+
+  int32_t count(MediumId medium) const {
+    for (const Entry& entry : entries()) {
+      if (entry.medium == medium) return entry.count;
+    }
+    return 0;
+  }
+
+  friend bool operator==(const MediaSet& a, const MediaSet& b) {
+    if (a.size_ != b.size_) return false;
+    for (uint32_t i = 0; i < a.size_; ++i) {
+      if (!(a.entries_[i] == b.entries_[i])) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::array<Entry, kCapacity> entries_{};
+  uint32_t size_ = 0;
+};
+
+}  // namespace freepath
