@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/error.h"
+#include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/render/slab.h"
 
 namespace freepath::program {
@@ -23,10 +25,13 @@ namespace {
 
 constexpr const char* kSlabFooter =
     R"(Light falls on the top of the first layer; all results are fractions of its flux, each with its
-standard error. The layers have no lateral bounds, no surfaces (a refractive index of 1) and
-Henyey-Greenstein scattering; paths through them take the same walk as a renderer's. --tau, --albedo
-and --g are lists, from the top down; a single value of --albedo or --g is for all layers. The result
-does not depend on --threads or --batch. Ctrl-C ends early, with the paths traced so far.
+standard error. The layers have no lateral bounds and no surfaces (a refractive index of 1); paths
+through them take the same walk as a renderer's. --tau, --albedo and --g are lists, from the top down;
+a single value is for all layers. --mua, --mus and --thickness, in one unit of length, say the same as
+--tau and --albedo; --phase, given once for all or once for each layer, is in place of --g. In thick
+layers that absorb, paths split on their way down, so that even 1e-9 of the light has an answer. Where
+no path came through, an upper limit at a confidence of 95 % is given instead. The result does not
+depend on --threads or --batch. Ctrl-C ends early, with the paths traced so far.
 
 Methods take options after their name: weighted-delta:rate-scale=2
 
@@ -34,12 +39,17 @@ Examples:
   freepath slab --tau 2 --albedo 0.9 --g 0.75
   freepath slab --tau 0.25,0.25 --albedo 0.5,0.3 --g 0 --json
   freepath slab --tau inf --albedo 0.99 --diffuse          (white-sky albedo of a half-space)
+  freepath slab --tau 20 --albedo 0.5                      (a transmittance of some 1e-9)
+  freepath slab --mua 0.1,0.03 --mus 10,20 --thickness 0.5,2 --g 0.9        (tissue; 1/mm and mm)
+  freepath slab --tau 10 --albedo 0.9999 --phase droplets:diameter=20
   freepath slab --tau 1,inf --albedo 1,0.9 --g 0.85,0 --mu0 0.5 --paths 1e7
   freepath slab --tau 8 --albedo 0.8 --tracker weighted-delta:rate-scale=2 --absorption analog)";
 
 /// The options as they were typed; read_* turn them into what the library takes.
 struct SlabOptions {
-  std::string tau, albedo = "1", g = "0";
+  std::string tau, albedo, g = "0";
+  std::string mua, mus, thickness;
+  std::vector<std::string> phases;
   double mu0 = SlabSettings{}.mu0;
   bool diffuse = false;
   std::string paths = "1e6";
@@ -53,44 +63,109 @@ struct SlabOptions {
 };
 
 /// "1,2,inf": infinity is a number here.
-std::vector<double> read_taus(const std::string& text) {
-  std::vector<double> taus;
+std::vector<double> read_thicknesses(const std::string& text, std::string_view option) {
+  std::vector<double> values;
   std::size_t begin = 0;
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string item = text.substr(begin, end - begin);
     const bool last = end == text.size();
     if (item != "inf") {
-      taus.push_back(parse_numbers(item, "--tau")[0]);
+      values.push_back(parse_numbers(item, option)[0]);
     } else if (last) {
-      taus.push_back(std::numeric_limits<double>::infinity());
+      values.push_back(std::numeric_limits<double>::infinity());
     } else {
-      fail("--tau: '{}' has inf before other layers; only the last layer can be a half-space",
+      fail("{}: '{}' has inf before other layers; only the last layer can be a half-space", option,
            text);
     }
     begin = end + 1;
   }
-  return taus;
+  return values;
 }
 
 /// A value for each layer.
+/// @param counted the option that says how many layers there are
 std::vector<double> read_layer_values(const std::string& text, std::string_view option,
-                                      std::size_t layers) {
+                                      std::size_t layers, std::string_view counted) {
   std::vector<double> values = parse_numbers(text, option);
   if (values.size() == 1) values.resize(layers, values[0]);
   if (values.size() != layers) {
-    fail("{}: '{}' has {} values, but --tau has {}; give one for each layer, or one for all",
-         option, text, values.size(), layers);
+    fail("{}: '{}' has {} values, but {} has {}; give one for each layer, or one for all", option,
+         text, values.size(), counted, layers);
   }
   return values;
 }
 
-std::vector<SlabLayer> read_layers(const SlabOptions& options) {
-  const std::vector<double> taus = read_taus(options.tau);
-  const std::vector<double> albedos = read_layer_values(options.albedo, "--albedo", taus.size());
-  const std::vector<double> gs = read_layer_values(options.g, "--g", taus.size());
+/// Layers by optical thickness and albedo.
+std::vector<SlabLayer> read_optical_layers(const SlabOptions& options) {
+  const std::vector<double> taus = read_thicknesses(options.tau, "--tau");
+  const std::string albedo = options.albedo.empty() ? "1" : options.albedo;
+  const std::vector<double> albedos = read_layer_values(albedo, "--albedo", taus.size(), "--tau");
   std::vector<SlabLayer> layers;
-  for (std::size_t i = 0; i < taus.size(); ++i) layers.push_back({taus[i], albedos[i], gs[i]});
+  for (std::size_t i = 0; i < taus.size(); ++i) layers.push_back({taus[i], albedos[i], 0});
+  return layers;
+}
+
+/// Layers by coefficients and thickness.
+std::vector<SlabLayer> read_physical_layers(const SlabOptions& options) {
+  if (options.thickness.empty() || options.mua.empty() || options.mus.empty()) {
+    fail("--mua, --mus and --thickness belong together; give all three, or --tau and --albedo");
+  }
+  if (!options.albedo.empty()) {
+    fail("--albedo says again what --mua and --mus say; give one or the other");
+  }
+  const std::vector<double> thicknesses = read_thicknesses(options.thickness, "--thickness");
+  const std::size_t count = thicknesses.size();
+  const auto muas = read_layer_values(options.mua, "--mua", count, "--thickness");
+  const auto muss = read_layer_values(options.mus, "--mus", count, "--thickness");
+  std::vector<SlabLayer> layers;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double mut = muas[i] + muss[i];
+    if (!(muas[i] >= 0 && muss[i] >= 0 && mut > 0)) {
+      fail("layer {} has --mua {} and --mus {}; neither may be negative, nor both 0", i + 1,
+           muas[i], muss[i]);
+    }
+    if (!(thicknesses[i] > 0)) {
+      fail("--thickness of layer {} is {}; it must be above 0", i + 1, thicknesses[i]);
+    }
+    layers.push_back({mut * thicknesses[i], muss[i] / mut, 0});
+  }
+  return layers;
+}
+
+void read_phases(const SlabOptions& options, std::vector<SlabLayer>& layers) {
+  std::vector<std::shared_ptr<const PhaseFunction>> phases;
+  for (const std::string& text : options.phases) {
+    phases.push_back(read_option(
+        "--phase", [&] { return std::make_shared<PhaseFunction>(parse_phase_function(text)); }));
+  }
+  if (phases.size() != 1 && phases.size() != layers.size()) {
+    fail("--phase: it is given {} times for {} layers; give it once, or once for each layer",
+         phases.size(), layers.size());
+  }
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    layers[i].phase = phases[phases.size() == 1 ? 0 : i];
+  }
+}
+
+std::vector<SlabLayer> read_layers(const SlabOptions& options) {
+  const bool is_physical =
+      !options.mua.empty() || !options.mus.empty() || !options.thickness.empty();
+  if (!is_physical && options.tau.empty()) {
+    fail("no layers are given; give --tau, or --mua, --mus and --thickness");
+  }
+  if (is_physical && !options.tau.empty()) {
+    fail("--tau says again what --mua, --mus and --thickness say; give one or the other");
+  }
+  std::vector<SlabLayer> layers =
+      is_physical ? read_physical_layers(options) : read_optical_layers(options);
+  if (!options.phases.empty()) {
+    read_phases(options, layers);
+    return layers;
+  }
+  const std::vector<double> gs =
+      read_layer_values(options.g, "--g", layers.size(), is_physical ? "--thickness" : "--tau");
+  for (std::size_t i = 0; i < layers.size(); ++i) layers[i].g = gs[i];
   return layers;
 }
 
@@ -112,27 +187,46 @@ SlabSettings read_settings(const SlabOptions& options) {
   return settings;
 }
 
+/// What is not reflected or transmitted.
+SlabEstimate absorptance_of(const SlabResult& result) {
+  return {1 - result.total.mean, result.total.error, {}};
+}
+
 void print_json(const SlabResult& result, const SlabSettings& settings) {
-  const nlohmann::ordered_json json = {{"reflectance", result.reflectance.mean},
-                                       {"reflectance_error", result.reflectance.error},
-                                       {"transmittance", result.transmittance.mean},
-                                       {"transmittance_error", result.transmittance.error},
-                                       {"unscattered", result.unscattered.mean},
-                                       {"unscattered_error", result.unscattered.error},
-                                       {"paths", result.paths},
-                                       {"tracker", result.tracker},
-                                       {"seed", settings.walk.seed}};
+  nlohmann::ordered_json json;
+  const auto put = [&](const std::string& name, const SlabEstimate& estimate) {
+    json[name] = estimate.mean;
+    json[name + "_error"] = estimate.error;
+    if (!estimate.upper) return;
+    json[name + "_error"] = nullptr;  // there is none
+    json[name + "_upper"] = *estimate.upper;
+  };
+  put("reflectance", result.reflectance);
+  put("transmittance", result.transmittance);
+  put("unscattered", result.unscattered);
+  put("absorptance", absorptance_of(result));
+  json["paths"] = result.paths;
+  json["tracker"] = result.tracker;
+  json["seed"] = settings.walk.seed;
   print_json_text(json);
 }
 
 void print_table(const SlabResult& result) {
-  const auto row = [](const char* name, const SlabEstimate& estimate) {
-    print("{:<15}{:>10.6f}  +- {:.6f}\n", name, estimate.mean, estimate.error);
+  const auto row = [&](const char* name, const SlabEstimate& estimate) {
+    constexpr double kFixed = 1e-3;  // below, six decimals say too little
+    if (estimate.upper) {
+      print("{:<15}  < {:.2g}  (95 %; none of {} paths)\n", name, *estimate.upper,
+            result.paths);
+    } else if (estimate.mean != 0 && std::abs(estimate.mean) < kFixed) {
+      print("{:<15}{:>10.4e}  +- {:.1e}\n", name, estimate.mean, estimate.error);
+    } else {
+      print("{:<15}{:>10.6f}  +- {:.6f}\n", name, estimate.mean, estimate.error);
+    }
   };
   row("reflectance", result.reflectance);
   row("transmittance", result.transmittance);
   row("  unscattered", result.unscattered);
-  row("absorptance", {1 - result.total.mean, result.total.error});
+  row("absorptance", absorptance_of(result));
   print("{} paths, tracker {}\n", result.paths, result.tracker);
   if (!result.tracker_reason.empty()) {
     print("auto: {}, since {}\n", result.tracker, result.tracker_reason);
@@ -173,13 +267,21 @@ void run(const SlabOptions& options) {
 }
 
 void add_layer_options(CLI::App& command, SlabOptions& o) {
+  command.add_option("--tau", o.tau,
+                     "Optical thickness of each layer, T,T,...; the last may be inf");
+  command.add_option("--albedo", o.albedo, "Single-scattering albedo of each layer, 0 to 1 [1]");
+  command.add_option("--mua", o.mua, "In place of both: absorption coefficients [1/length],");
+  command.add_option("--mus", o.mus, "scattering coefficients [1/length] and");
+  command.add_option("--thickness", o.thickness, "thicknesses [length]; the last may be inf");
+  CLI::Option* const g =
+      command.add_option("--g", o.g, "Mean cosine of each layer's phase function, -1 to 1")
+          ->capture_default_str();
   command
-      .add_option("--tau", o.tau, "Optical thickness of each layer, T,T,...; the last may be inf")
-      ->required();
-  command.add_option("--albedo", o.albedo, "Single-scattering albedo of each layer, 0 to 1")
-      ->capture_default_str();
-  command.add_option("--g", o.g, "Mean cosine of each layer's phase function, -1 to 1")
-      ->capture_default_str();
+      .add_option("--phase", o.phases,
+                  "Phase function in place of --g, as `freepath render --phase` takes it")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->excludes(g);
   CLI::Option* const mu0 =
       command.add_option("--mu0", o.mu0, "Cosine of incidence, 1 being along the normal")
           ->capture_default_str();

@@ -6,10 +6,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "freepath/media/medium.h"
+#include "freepath/media/phase/phase_function.h"
 #include "freepath/transport/walker.h"
 
 namespace freepath {
@@ -19,6 +23,8 @@ struct SlabLayer {
   double tau = 1;     ///< Optical thickness, > 0; infinite (a half-space) in the last layer alone.
   double albedo = 1;  ///< sigma_s / sigma_t.
   double g = 0;       ///< Mean cosine of the Henyey-Greenstein phase function, |g| < 1.
+  /// Phase function in place of Henyey-Greenstein's; layers of one component share it.
+  std::shared_ptr<const PhaseFunction> phase = nullptr;
 };
 
 struct SlabSettings {
@@ -40,6 +46,9 @@ struct SlabSettings {
 struct SlabEstimate {
   double mean = 0;
   double error = 0;
+  /// Upper limit at a confidence of 95 %, where no path brought anything although some could: the
+  /// mean and the error are 0 then, and say nothing.
+  std::optional<double> upper;
 };
 
 /// Fluxes, as fractions of the flux that comes in. Light comes in through the top of the first
@@ -67,12 +76,16 @@ using SlabProgress = std::function<bool(uint64_t done, uint64_t total)>;
 struct SlabMedium {
   Medium medium;
   bool half_space = false;  ///< Whether what arrives at the bottom is to be forgotten.
+  /// Depths [world], from the top down, at which paths split on their way down, so that their
+  /// number stays about the same where light decays by many powers of ten; empty where it does not.
+  std::vector<float> splits;
 };
 
 /// @param super_voxel as in SlabSettings
+/// @param mu0 cosine of incidence, for the depths at which paths split
 /// @throws Error for a value out of range, layers of more than Medium::kMaxComponents kinds (of
-///   albedo and g), and a half-space that absorbs too little for paths in it to end
-SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel = 0);
+///   albedo and phase function), and a half-space that absorbs too little for paths in it to end
+SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel = 0, double mu0 = 1);
 
 /// Traces paths through layers until each has left or was absorbed. Unbiased if the tracker is. The
 /// result depends on layers, seed, tracker, absorption, instructions and the number of paths alone,

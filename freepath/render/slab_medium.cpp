@@ -13,11 +13,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/render/slab.h"
+#include "freepath/render/slab_splitting.h"
 
 namespace freepath {
 namespace {
@@ -42,7 +44,7 @@ void check_layer(const SlabLayer& layer, std::size_t number, bool last) {
   if (!(layer.albedo >= 0 && layer.albedo <= 1)) {
     fail("albedo of layer {} is {}; it must lie in [0, 1]", number, layer.albedo);
   }
-  if (!(std::abs(static_cast<float>(layer.g)) < 1)) {
+  if (!layer.phase && !(std::abs(static_cast<float>(layer.g)) < 1)) {
     fail("g of layer {} is {}; the mean cosine must lie strictly between -1 and 1", number,
          layer.g);
   }
@@ -59,7 +61,12 @@ void check_layer(const SlabLayer& layer, std::size_t number, bool last) {
 /// 1) more than sqrt(3) times that. On the way down and up again 30 of them leave exp(-34) = 1e-15.
 double half_space_tau(const SlabLayer& layer) {
   const double c = layer.albedo;
-  return 30 * std::max(1.0, 1 / std::sqrt(3 * (1 - c) * (1 - c * layer.g)));
+  const double g = layer.phase ? double{layer.phase->mean_cosine()} : layer.g;
+  return 30 * std::max(1.0, 1 / std::sqrt(3 * (1 - c) * (1 - c * g)));
+}
+
+PhaseFunction phase_of(const SlabLayer& layer) {
+  return layer.phase ? *layer.phase : PhaseFunction::henyey_greenstein(static_cast<float>(layer.g));
 }
 
 /// The part of the column that a layer fills.
@@ -118,7 +125,7 @@ std::shared_ptr<const Field> make_field(const Column& column, std::span<const st
   return field;
 }
 
-/// Layers that share albedo and g, and hence a component.
+/// Layers that share albedo and phase function, and hence a component.
 struct Kind {
   SlabLayer layer;
   std::vector<std::size_t> members;
@@ -128,7 +135,8 @@ std::vector<Kind> kinds_of(std::span<const SlabLayer> layers) {
   std::vector<Kind> kinds;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const auto same = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) {
-      return kind.layer.albedo == layers[i].albedo && kind.layer.g == layers[i].g;
+      return kind.layer.albedo == layers[i].albedo && kind.layer.phase == layers[i].phase &&
+             (kind.layer.phase || kind.layer.g == layers[i].g);
     });
     if (same == kinds.end()) {
       kinds.push_back({layers[i], {i}});
@@ -137,15 +145,52 @@ std::vector<Kind> kinds_of(std::span<const SlabLayer> layers) {
     }
   }
   if (kinds.size() > Medium::kMaxComponents) {
-    fail("the layers have {} different pairs of albedo and g; at most {} are possible",
+    fail("the layers have {} different pairs of albedo and phase function; at most {} are possible",
          kinds.size(), Medium::kMaxComponents);
   }
   return kinds;
 }
 
+/// Depths where paths split: light decays by half from one to the next. None where all the layers
+/// together let enough of it through, nor in a half-space, of which nothing arrives below.
+std::vector<float> make_splits(std::span<const SlabLayer> layers, std::span<const double> taus,
+                               const Column& column, double mu0) {
+  constexpr double kEnoughPasses = 5;       // decays by exp(-5) without
+  constexpr std::size_t kMostSplits = 900;  // 2^-900 times a path is still a double
+  constexpr int kMoments = 96;
+  std::vector<float> splits;
+  const double thickness = std::accumulate(taus.begin(), taus.end(), 0.0);
+  if (std::isinf(layers.back().tau) || thickness / mu0 < kEnoughPasses) return splits;
+  std::vector<double> exponents(layers.size());
+  for (const Kind& kind : kinds_of(layers)) {
+    // Light that nothing scatters keeps its direction.
+    const double exponent =
+        kind.layer.albedo == 0
+            ? 1 / mu0
+            : relaxation_exponent(kind.layer.albedo,
+                                  legendre_moments(phase_of(kind.layer), kMoments));
+    for (const std::size_t i : kind.members) exponents[i] = exponent;
+  }
+  double total = 0;
+  for (std::size_t i = 0; i < layers.size(); ++i) total += exponents[i] * taus[i];
+  if (total < kEnoughPasses) return splits;
+  double next = std::numbers::ln2;  // decay at the next plane
+  double decay = 0;                 // at the top of the layer
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const double in_layer = exponents[i] * taus[i];
+    const LayerVoxels& voxels = column.layers[i];
+    for (; next < decay + in_layer && splits.size() < kMostSplits; next += std::numbers::ln2) {
+      const double share = (next - decay) / in_layer;
+      splits.push_back(static_cast<float>((voxels.begin + share * voxels.count) * column.edge));
+    }
+    decay += in_layer;
+  }
+  return splits;
+}
+
 }  // namespace
 
-SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel) {
+SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel, double mu0) {
   if (layers.empty() || layers.size() > kMaxLayers) {
     fail("tau has {} layers; 1 to {} are possible", layers.size(), kMaxLayers);
   }
@@ -161,7 +206,7 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel) 
     component.density = make_field(column, kind.members);
     component.sigma_s = Spectrum(static_cast<float>(kind.layer.albedo));
     component.sigma_a = Spectrum(1.0F) - component.sigma_s;
-    component.phase = PhaseFunction::henyey_greenstein(static_cast<float>(kind.layer.g));
+    component.phase = phase_of(kind.layer);
     components.push_back(std::move(component));
   }
   // Everything is at x = y = 0 of the index; z = 0 of the world is the face of the first voxel.
@@ -169,8 +214,8 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel) 
   world_to_index[0][0] = world_to_index[1][1] = 0;
   world_to_index[2][2] = 1 / column.edge;
   world_to_index[3][2] = -0.5;
-  return {Medium(std::move(components), super_voxel, world_to_index),
-          std::isinf(layers.back().tau)};
+  return {Medium(std::move(components), super_voxel, world_to_index), std::isinf(layers.back().tau),
+          make_splits(layers, taus, column, mu0)};
 }
 
 }  // namespace freepath

@@ -224,6 +224,15 @@ TEST_F(BadInputTest, SlabsThatAreNone) {
   expect_error("slab --tau 1,,2", {"--tau", "''"});
   expect_error("slab --tau inf --albedo 1", {"half-space", "albedo"});
   expect_error("slab --tau 1,2 --albedo 0.1,0.2,0.3", {"--albedo", "3 values"});
+  expect_error("slab", {"--tau", "--thickness"});
+  expect_error("slab --tau 1 --mua 1", {"--tau", "--mua"});
+  expect_error("slab --mua 1 --mus 1", {"--thickness", "all three"});
+  expect_error("slab --mua 1 --mus 1 --thickness 1 --albedo 1", {"--albedo"});
+  expect_error("slab --mua 0 --mus 0 --thickness 1", {"layer 1", "--mua 0"});
+  expect_error("slab --mua 1 --mus 1 --thickness -2", {"--thickness", "-2"});
+  expect_error("slab --tau 1,2 --phase rayleigh --phase rayleigh --phase rayleigh",
+               {"--phase", "3 times"});
+  expect_error("slab --tau 1 --phase ralyeigh", {"--phase", "ralyeigh"});
 }
 
 TEST_F(BadInputTest, OldPicturesSurviveAnError) {

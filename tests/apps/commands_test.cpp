@@ -83,13 +83,29 @@ TEST_F(CommandsTest, GenerateDependsOnItsSeedAlone) {
 TEST_F(CommandsTest, SlabAgreesWithThePublishedValue) {
   const json slab = run_json("slab --tau 1 --albedo 1 --g 0.75 --paths 200000 --json");
   expect_keys(slab, {"reflectance", "reflectance_error", "transmittance", "transmittance_error",
-                     "unscattered", "paths", "tracker"});
+                     "unscattered", "absorptance", "absorptance_error", "paths", "tracker"});
+  EXPECT_NEAR(slab["absorptance"].get<double>(), 0, 1e-6);
   // Reflectance 0.07874 of a slab of optical thickness 1 [vandeHulst80, table 37].
   EXPECT_NEAR(slab["reflectance"].get<double>(), 0.07874,
               4.5 * slab["reflectance_error"].get<double>() + 5e-6);
   EXPECT_NEAR(slab["unscattered"].get<double>(), std::exp(-1.0), 0.01);
   EXPECT_EQ(slab["paths"], 200000);
   EXPECT_EQ(slab["tracker"], "delta");
+}
+
+TEST_F(CommandsTest, SlabTakesCoefficientsAndPhaseFunctions) {
+  const std::string run = " --paths 20000 --json";
+  const json optical = run_json("slab --tau 2,4 --albedo 0.75,0.5 --g 0.5" + run);
+  const json physical = run_json(
+      "slab --mua 0.5,1 --mus 1.5,1 --thickness 1,2 --phase henyey-greenstein:g=0.5" + run);
+  EXPECT_EQ(optical, physical);
+}
+
+TEST_F(CommandsTest, SlabThatNoPathPassesHasALimitInPlaceOfAnError) {
+  const json slab = run_json("slab --tau 4.9 --albedo 0 --paths 10 --json");
+  EXPECT_TRUE(slab["transmittance_error"].is_null());
+  EXPECT_NEAR(slab["transmittance_upper"].get<double>(), 0.2589, 1e-4);
+  EXPECT_FALSE(slab.contains("reflectance_upper"));
 }
 
 TEST_F(CommandsTest, MoreThreadsThanTheMachineHasAreFine) {

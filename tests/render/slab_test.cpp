@@ -220,7 +220,7 @@ TEST(Slab, ErrorsNameParameterAndValue) {
   std::vector<SlabLayer> many;
   many.reserve(17);
   for (int i = 0; i < 17; ++i) many.push_back({1, 0.05 * i, 0});
-  expect_error(many, settings, "17 different pairs of albedo and g");
+  expect_error(many, settings, "17 different pairs of albedo and phase function");
 
   const auto with = [](auto member, auto value) {
     SlabSettings changed;
