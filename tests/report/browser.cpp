@@ -96,7 +96,8 @@ Screenshot Browser::screenshot(const std::string& address, int width, int height
   Image image;
   bool srgb = false;
   int alpha = -1;
-  const std::string reason = image_codec().read(file.string(), image, srgb, alpha);
+  const std::string reason =
+      image_codec().read(file.string(), fs::file_size(file), image, srgb, alpha);
   if (!reason.empty()) throw std::runtime_error("there is no screenshot: " + reason);
   Screenshot result{image.width, image.height};
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
