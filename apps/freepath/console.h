@@ -69,8 +69,8 @@ void tell(fmt::format_string<Args...> format, Args&&... args) {
 /// Writes a warning, on a line.
 template <class... Args>
 void warn(fmt::format_string<Args...> format, Args&&... args) {
-  put_message("freepath: warning: " +
-              fmt::vformat(format, fmt::make_format_args(shown(args)...)) + '\n');
+  put_message("freepath: warning: " + fmt::vformat(format, fmt::make_format_args(shown(args)...)) +
+              '\n');
 }
 
 }  // namespace freepath::program

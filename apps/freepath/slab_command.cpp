@@ -215,8 +215,7 @@ void print_table(const SlabResult& result) {
   const auto row = [&](const char* name, const SlabEstimate& estimate) {
     constexpr double kFixed = 1e-3;  // below, six decimals say too little
     if (estimate.upper) {
-      print("{:<15}  < {:.2g}  (95 %; none of {} paths)\n", name, *estimate.upper,
-            result.paths);
+      print("{:<15}  < {:.2g}  (95 %; none of {} paths)\n", name, *estimate.upper, result.paths);
     } else if (estimate.mean != 0 && std::abs(estimate.mean) < kFixed) {
       print("{:<15}{:>10.4e}  +- {:.1e}\n", name, estimate.mean, estimate.error);
     } else {

@@ -14,8 +14,8 @@ namespace {
 constexpr double kUsable = 0.8;  // of the memory present: the rest is for what is made of an input
 
 uint64_t least_present() {
-  auto present = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-                 static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+  auto present =
+      static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
   // A container's limit: "max", or a number, in either version of control groups.
   for (const char* const name :
        {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
@@ -49,9 +49,10 @@ void check_declared(std::string_view name, std::string_view what, double decoded
   constexpr double kLargestExpansion = 1 << 16;
   constexpr double kFreeOfDoubt = 1 << 26;
   if (decoded <= std::max(kFreeOfDoubt, kLargestExpansion * static_cast<double>(stored))) return;
-  fail("{}: it declares {}, but has only {} bytes: it is truncated or damaged; copy or export it "
-       "again",
-       name, what, stored);
+  fail(
+      "{}: it declares {}, but has only {} bytes: it is truncated or damaged; copy or export it "
+      "again",
+      name, what, stored);
 }
 
 }  // namespace freepath

@@ -29,15 +29,16 @@ std::string mend_invalid_pixels(Image& image, const std::string& name, InvalidPo
     count += invalid ? 1 : 0;
   }
   if (count == 0) return {};
-  const std::string place = fmt::format("pixel ({}, {}) is {}", first % image.width,
-                                        first / image.width,
-                                        std::isnan(first_value) ? "NaN" : "infinite");
+  const std::string place =
+      fmt::format("pixel ({}, {}) is {}", first % image.width, first / image.width,
+                  std::isnan(first_value) ? "NaN" : "infinite");
   if (policy == InvalidPolicy::kError) {
     fail("{}: {}; repair the image, or have such values taken as 0 (--invalid zero)", name, place);
   }
-  return fmt::format("{}: {} pixels with values that are NaN or infinite were taken as 0; the first: "
-                     "{}",
-                     name, count, place);
+  return fmt::format(
+      "{}: {} pixels with values that are NaN or infinite were taken as 0; the first: "
+      "{}",
+      name, count, place);
 }
 
 }  // namespace freepath

@@ -1,6 +1,6 @@
 #pragma once
-/// @file What becomes of values that can't be used: NaN, infinite, or out of the range of float. One
-/// rule for voxels and for pixels.
+/// @file What becomes of values that can't be used: NaN, infinite, or out of the range of float.
+/// One rule for voxels and for pixels.
 
 #include <string>
 
@@ -8,12 +8,12 @@
 
 namespace freepath {
 
-/// What to do about a value that is NaN, infinite or out of the range of float: refuse the input, or
-/// put 0 in its place and say how many there were.
+/// What to do about a value that is NaN, infinite or out of the range of float: refuse the input,
+/// or put 0 in its place and say how many there were.
 enum class InvalidPolicy { kError, kZero };
 
-/// Puts 0 in place of the invalid values in the colour channels of an image (R, G, B, Y, or the only
-/// one), or refuses it.
+/// Puts 0 in place of the invalid values in the colour channels of an image (R, G, B, Y, or the
+/// only one), or refuses it.
 /// @param name of the image, the beginning of messages
 /// @return a warning with the number of pixels and the place of the first, empty if there are none
 /// @throws Error that names the first pixel, under InvalidPolicy::kError

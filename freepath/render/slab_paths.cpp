@@ -203,8 +203,8 @@ SlabSums SlabPaths::sum() const {
     sums.bottom.add(outcome.bottom);
     sums.unscattered.add(outcome.unscattered);
     sums.total.add(total);
-    sums.largest_weight = std::max(
-        {sums.largest_weight, std::abs(outcome.top), std::abs(outcome.bottom)});
+    sums.largest_weight =
+        std::max({sums.largest_weight, std::abs(outcome.top), std::abs(outcome.bottom)});
   }
   return sums;
 }

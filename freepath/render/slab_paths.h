@@ -37,10 +37,11 @@ struct SlabSums {
 /// Traces chunks of paths. One for each thread; its memory is used again.
 ///
 /// Where a path comes down through a plane of SlabMedium::splits it becomes two of half the weight;
-/// on the way up one of two is ended, and the other has twice the weight. Both are unbiased whatever
-/// the planes are, and so is stopping at a plane, since flights have no memory. What a path and its
-/// branches bring is one sample, so that the standard errors are those of independent paths. A path's
-/// branches are traced one after the other, the latest first: no sum depends on the batch.
+/// on the way up one of two is ended, and the other has twice the weight. Both are unbiased
+/// whatever the planes are, and so is stopping at a plane, since flights have no memory. What a
+/// path and its branches bring is one sample, so that the standard errors are those of independent
+/// paths. A path's branches are traced one after the other, the latest first: no sum depends on the
+/// batch.
 class SlabPaths {
  public:
   SlabPaths(const SlabMedium& slab, const Walker& walker, const SlabSettings& settings);

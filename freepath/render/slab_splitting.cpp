@@ -30,8 +30,8 @@ std::vector<double> legendre_moments(const PhaseFunction& phase, int count) {
     const double angle = (i + 0.5) * std::numbers::pi / kAngles;
     const double mu = std::cos(angle);
     const double sine = std::sin(angle);
-    const double density = phase.evaluate(
-        Vec3f(0, 0, 1), Vec3f(static_cast<float>(sine), 0, static_cast<float>(mu)));
+    const double density =
+        phase.evaluate(Vec3f(0, 0, 1), Vec3f(static_cast<float>(sine), 0, static_cast<float>(mu)));
     const double share = density * sine;
     double before = 0;
     double legendre = 1;

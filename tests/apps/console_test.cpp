@@ -23,9 +23,7 @@ class ConsoleTest : public ProgramTest {
   ConsoleTest() { write_cube(path("ball.vdb")); }
 
   /// Fails where a text could do something to a terminal, or is no UTF-8.
-  static void expect_harmless(const std::string& text) {
-    EXPECT_EQ(text, printable(text, '\n'));
-  }
+  static void expect_harmless(const std::string& text) { EXPECT_EQ(text, printable(text, '\n')); }
 };
 
 constexpr const char* kSmall = " --size 8x8 --spp 1 ";
@@ -34,8 +32,8 @@ TEST_F(ConsoleTest, ResultsThatCantBeWrittenAreAnError) {
   ASSERT_EQ(run(std::string("render ball.vdb -o a.exr") + kSmall).status, 0);
   for (const std::string command :
        {"info ball.vdb", "info ball.vdb --json", "slab --tau 1 --paths 100",
-        "slab --tau 1 --paths 100 --json", "diff a.exr a.exr", "diff a.exr a.exr --json", "trackers",
-        "trackers --json", "lab --list", "--help", "render --help", "--version"}) {
+        "slab --tau 1 --paths 100 --json", "diff a.exr a.exr", "diff a.exr a.exr --json",
+        "trackers", "trackers --json", "lab --list", "--help", "render --help", "--version"}) {
     const Outcome outcome = shell("freepath " + command + " >/dev/full");
     EXPECT_EQ(outcome.status, 1) << command << outcome;
     EXPECT_EQ(outcome.messages,

@@ -57,12 +57,13 @@ TEST_F(InputFileTest, RefusesWhatIsNoRegularFileAtOnce) {
   };
   const std::filesystem::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(message(pipe), pipe.string() +
-                               ": is a pipe or a device, not a regular file; name an image");
+  EXPECT_EQ(message(pipe),
+            pipe.string() + ": is a pipe or a device, not a regular file; name an image");
   EXPECT_EQ(message("/dev/zero"),
             "/dev/zero: is a pipe or a device, not a regular file; name an image");
   EXPECT_EQ(message(folder_), folder_.string() + ": is a directory; name an image");
-  EXPECT_EQ(message(folder_ / "none"), (folder_ / "none").string() + ": no such file; check the path");
+  EXPECT_EQ(message(folder_ / "none"),
+            (folder_ / "none").string() + ": no such file; check the path");
 }
 
 TEST(MemoryBudget, AsksForWhatAFileCanDeliverAndTheMachineHas) {
@@ -70,16 +71,17 @@ TEST(MemoryBudget, AsksForWhatAFileCanDeliverAndTheMachineHas) {
     return message_of([&] { check_declared("a.hdr", "9x9 pixels", decoded, stored); });
   };
   EXPECT_EQ(declared(6e7, 57), "no error");
-  EXPECT_EQ(declared(5e9, 57),
-            "a.hdr: it declares 9x9 pixels, but has only 57 bytes: it is truncated or damaged; copy "
-            "or export it again");
+  EXPECT_EQ(
+      declared(5e9, 57),
+      "a.hdr: it declares 9x9 pixels, but has only 57 bytes: it is truncated or damaged; copy "
+      "or export it again");
   EXPECT_EQ(declared(5e9, 100000), "no error");  // one value throughout, well packed
   const auto present = static_cast<double>(memory_present());
   EXPECT_GT(present, 1e8);
   EXPECT_EQ(message_of([&] { check_memory_present("a", "9 bricks", 0.7 * present); }), "no error");
-  EXPECT_NE(message_of([&] { check_memory_present("a", "9 bricks", present); })
-                .find("a: 9 bricks need "),
-            std::string::npos);
+  EXPECT_NE(
+      message_of([&] { check_memory_present("a", "9 bricks", present); }).find("a: 9 bricks need "),
+      std::string::npos);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ SlabResult traced(const std::vector<SlabLayer>& layers, uint64_t paths, double m
 }
 
 TEST(SlabSplitting, LightThatNothingScattersFollowsTheExponentialLawToTheMinus40) {
-  for (const auto& [tau, mu0] : {std::pair{20.0, 1.0}, std::pair{20.0, 0.5}, std::pair{60.0, 1.0}}) {
+  for (const auto& [tau, mu0] :
+       {std::pair{20.0, 1.0}, std::pair{20.0, 0.5}, std::pair{60.0, 1.0}}) {
     const SlabResult result = traced({{tau, 0, 0}}, 100'000, mu0);
     EXPECT_TRUE(check_mean("transmittance", result.transmittance.mean, result.transmittance.error,
                            result.paths, std::exp(-tau / mu0), {threshold(), 0, 0.08}));
