@@ -11,8 +11,9 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "freepath/base/error.h"
 #include "freepath/io/volume.h"
-#include "freepath/media/super_voxels.h"
+#include "freepath/media/walk_part.h"
 
 namespace freepath::program {
 namespace {
@@ -114,30 +115,55 @@ std::string transform_text(const GridInfo& info) {
 
 /// The super-voxels that a render with a density scale of 1 would walk through.
 struct SuperVoxelFacts {
-  int cell_size;
-  Vec3i counts;
-  std::size_t cells;
-  std::size_t occupied;                     ///< In any channel.
+  std::string reason;  ///< Why none can be made; empty if they can.
+  int cell_size = 0;   ///< Of the first part, as the counts.
+  Vec3i counts{0};
+  std::size_t parts = 0;  ///< Places of voxels far apart have super-voxels each.
+  std::size_t cells = 0;
+  std::size_t occupied = 0;                 ///< In any channel.
   std::vector<SuperVoxelSummary> channels;  ///< Of each.
-  std::size_t memory_bytes;
+  std::size_t memory_bytes = 0;
 };
 
-SuperVoxelFacts super_voxel_facts(const std::vector<LoadedField>& fields) {
-  std::vector<const BrickMap*> maps;
-  maps.reserve(fields.size());
-  for (const LoadedField& loaded : fields) maps.push_back(&loaded.field.voxels);
-  const auto edge_length = std::cbrt(std::abs(fields[0].field.index_to_world.determinant()));
+SuperVoxelFacts super_voxel_facts(const std::vector<LoadedField>& loaded) {
+  SuperVoxelFacts facts;
+  std::vector<const Field*> fields;
+  fields.reserve(loaded.size());
+  for (const LoadedField& one : loaded) fields.push_back(&one.field);
+  const auto edge_length = std::cbrt(std::abs(fields[0]->index_to_world.determinant()));
   const std::vector<float> extinction(fields.size(), static_cast<float>(edge_length));
-  const SuperVoxels cells = build_super_voxels(maps, extinction, 0);
-  const auto empty = std::ranges::count_if(cells.empty_radius, [](int r) { return r > 0; });
-  SuperVoxelFacts facts{cells.cell_size,
-                        cells.counts,
-                        cells.cell_count(),
-                        cells.cell_count() - static_cast<std::size_t>(empty),
-                        {},
-                        cells.memory_bytes()};
-  for (int k = 0; k < cells.components; ++k) facts.channels.push_back(summarize(cells, k));
+  WalkParts made;
+  try {
+    made = make_walk_parts(make_walk_space(fields), fields, extinction, 0);
+  } catch (const Error& error) {
+    facts.reason = error.what();
+    return facts;
+  }
+  facts.cell_size = made.parts[0].cells.cell_size;
+  facts.counts = made.parts[0].cells.counts;
+  facts.parts = made.parts.size();
+  facts.channels.resize(fields.size());
+  for (const WalkPart& part : made.parts) {
+    const SuperVoxels& cells = part.cells;
+    facts.cells += cells.cell_count();
+    facts.occupied += static_cast<std::size_t>(
+        std::ranges::count_if(cells.empty_radius, [](int radius) { return radius == 0; }));
+    facts.memory_bytes += cells.memory_bytes();
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      facts.channels[k].merge(summarize(cells, static_cast<int>(k)));
+    }
+  }
   return facts;
+}
+
+std::string cells_text(const SuperVoxelFacts& cells) {
+  const std::string shape =
+      cells.parts == 1 ? fmt::format("{} x {} x {} of {} voxels a side", cells.counts.x,
+                                     cells.counts.y, cells.counts.z, cells.cell_size)
+                       : fmt::format("{} in {} parts that lie apart", cells.cells, cells.parts);
+  return fmt::format("{}, {:.1f} % occupied, {}", shape,
+                     100.0 * static_cast<double>(cells.occupied) / static_cast<double>(cells.cells),
+                     size_text(static_cast<double>(cells.memory_bytes)));
 }
 
 /// "", or "R " of a grid of vectors.
@@ -197,11 +223,7 @@ std::string grid_text(const Described& grid) {
     row("in memory", fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
                                  size_text(static_cast<double>(bricks.bytes)), bricks.count));
     const SuperVoxelFacts cells = super_voxel_facts(grid.loaded);
-    row("super-voxels",
-        fmt::format("{} x {} x {} of {} voxels a side, {:.1f} % occupied, {}", cells.counts.x,
-                    cells.counts.y, cells.counts.z, cells.cell_size,
-                    100.0 * static_cast<double>(cells.occupied) / static_cast<double>(cells.cells),
-                    size_text(static_cast<double>(cells.memory_bytes))));
+    row("super-voxels", cells.reason.empty() ? cells_text(cells) : "none: " + cells.reason);
     for (std::size_t i = 0; i < cells.channels.size(); ++i) {
       row("", fmt::format("{}of those occupied the mean maximum is {:.4g}, the mean minimum {:.4g}",
                           channel_prefix(info, i), cells.channels[i].mean_maximum,
@@ -256,11 +278,17 @@ nlohmann::json grid_json(const Described& grid) {
   json["bricks"] = bricks.count;
   const SuperVoxelFacts cells = super_voxel_facts(grid.loaded);
   nlohmann::json& super_voxels = json["super_voxels"];
-  super_voxels = {{"edge_voxels", cells.cell_size},
-                  {"counts", to_json(cells.counts)},
-                  {"cells", cells.cells},
-                  {"occupied", cells.occupied},
-                  {"memory_bytes", cells.memory_bytes}};
+  if (!cells.reason.empty()) super_voxels["reason"] = cells.reason;
+  if (cells.reason.empty()) {
+    super_voxels = {{"parts", cells.parts},
+                    {"cells", cells.cells},
+                    {"occupied", cells.occupied},
+                    {"memory_bytes", cells.memory_bytes}};
+  }
+  if (cells.parts == 1) {
+    super_voxels["edge_voxels"] = cells.cell_size;
+    super_voxels["counts"] = to_json(cells.counts);
+  }
   for (std::size_t i = 0; i < cells.channels.size(); ++i) {
     nlohmann::json& target = info.channels == 1 ? super_voxels : json["channels"][i];
     target["mean_maximum"] = cells.channels[i].mean_maximum;

@@ -107,7 +107,7 @@ class PilotLine {
 void plan_super_voxels(const PlanOptions& options, const PictureSize& size, const Medium& medium,
                        const PilotSettings& settings, const PilotLine& line, PicturePlan& plan) {
   plan.chosen_edge = medium.super_voxels().cell_size;
-  plan.super_voxel_count = medium.super_voxels().cell_count();
+  plan.super_voxel_count = medium.super_voxel_count();
   std::vector<LoadedSubject> subjects;
   for (const int edge : kSuperVoxelSizes) {
     try {

@@ -76,11 +76,13 @@ BrickMapBuilder make_builder(const VolumeLayout& layout) {
   ValueScan bounds;
   for (const Vec3i& leaf : layout.leaves) extend(bounds, leaf, leaf + Vec3i(7));
   std::unordered_set<float> tile_values;
+  std::size_t places = layout.leaves.size();
   for (const VolumeTile& tile : layout.tiles) {
     extend(bounds, tile.origin, tile.origin + Vec3i(tile.size - 1));
     tile_values.insert(static_cast<float>(tile.value));
+    places += cube(tile.size / BrickMap::kBrickSize);
   }
-  return {bounds.active_min, bounds.active_max, layout.leaves.size() + tile_values.size()};
+  return {bounds.active_min, bounds.active_max, layout.leaves.size() + tile_values.size(), places};
 }
 
 }  // namespace

@@ -48,20 +48,12 @@ FloatGrid::Ptr grid_of(const Field& field, const VdbWriteOptions& options) {
   grid->setSaveFloatAsHalf(options.half);
   grid->setTransform(transform_of(field));
   const BrickMap& map = field.voxels;
-  const Vec3i& counts = map.brick_counts();
-  std::size_t entry = 0;
-  for (int x = 0; x < counts.x; ++x) {
-    for (int y = 0; y < counts.y; ++y) {
-      for (int z = 0; z < counts.z; ++z) {
-        const uint32_t brick = map.index()[entry++];
-        if (brick == 0) continue;
-        const Vec3i origin = map.origin() + Vec3i(x, y, z) * BrickMap::kBrickSize;
-        add_brick(map.voxels().subspan(std::size_t{brick} * BrickMap::kBrickVoxels,
-                                       BrickMap::kBrickVoxels),
-                  openvdb::Coord(origin.x, origin.y, origin.z), grid->tree());
-      }
-    }
-  }
+  map.for_each_brick([&](const PlacedBrick& placed) {
+    const Vec3i origin = placed.place * BrickMap::kBrickSize;
+    add_brick(map.voxels().subspan(std::size_t{placed.brick} * BrickMap::kBrickVoxels,
+                                   BrickMap::kBrickVoxels),
+              openvdb::Coord(origin.x, origin.y, origin.z), grid->tree());
+  });
   return grid;
 }
 

@@ -10,7 +10,8 @@
 namespace freepath {
 namespace {
 
-constexpr int64_t kMaxIndexEntries = int64_t{1} << 26;  // 256 MiB, some 3200³ voxels
+constexpr double kMaxIndexEntries = 1 << 26;              // 256 MiB, some 3200³ voxels
+constexpr std::size_t kMaxListed = std::size_t{1} << 24;  // 256 MiB
 constexpr std::size_t kMaxBricks = (std::size_t{1} << 31) / BrickMap::kBrickVoxels;
 
 int brick_of(int voxel) { return voxel >> 3; }  // floor, for negative coordinates too
@@ -19,10 +20,66 @@ std::size_t voxel_offset(const Vec3i& voxel) {
   return static_cast<std::size_t>((voxel.x & 7) << 6 | (voxel.y & 7) << 3 | (voxel.z & 7));
 }
 
+bool comes_before(const Vec3i& a, const Vec3i& b) {
+  if (a.x != b.x) return a.x < b.x;
+  return a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+bool is_listed_before(const PlacedBrick& listed, const Vec3i& place) {
+  return comes_before(listed.place, place);
+}
+
 }  // namespace
+
+uint32_t BrickMap::brick_at(const Vec3i& place) const {
+  if (is_sparse_) {
+    const auto found = std::lower_bound(listed_.begin(), listed_.end(), place, is_listed_before);
+    return found != listed_.end() && found->place == place ? found->brick : 0;
+  }
+  const Vec3i entry = place - origin_ / kBrickSize;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (entry[axis] < 0 || entry[axis] >= brick_counts_[axis]) return 0;
+  }
+  return index_[(static_cast<std::size_t>(entry.x) * brick_counts_.y + entry.y) * brick_counts_.z +
+                entry.z];
+}
+
+BrickWindow BrickMap::window(const Vec3i& begin, const Vec3i& end) const {
+  BrickWindow window{begin * kBrickSize, end - begin, nullptr, nullptr};
+  const Vec3d counts(window.brick_counts);
+  if (counts.x * counts.y * counts.z > kMaxIndexEntries) {
+    fail("a box of {} x {} x {} bricks is too many for a dense index", counts.x, counts.y,
+         counts.z);
+  }
+  auto index = std::make_shared<std::vector<uint32_t>>(window.entry_count());
+  auto row = index->begin();
+  for (int x = begin.x; x < end.x; ++x) {
+    for (int y = begin.y; y < end.y; ++y, row += window.brick_counts.z) {
+      if (!is_sparse_) {
+        for (int z = begin.z; z < end.z; ++z) row[z - begin.z] = brick_at(Vec3i(x, y, z));
+        continue;
+      }
+      auto listed =
+          std::lower_bound(listed_.begin(), listed_.end(), Vec3i(x, y, begin.z), is_listed_before);
+      const Vec3i past(x, y, end.z);
+      for (; listed != listed_.end() && is_listed_before(*listed, past); ++listed) {
+        row[listed->place.z - begin.z] = listed->brick;
+      }
+    }
+  }
+  window.index = index->data();
+  window.cut_out = std::move(index);
+  return window;
+}
+
+BrickWindow BrickMap::window() const {
+  if (is_sparse_) fail("the map's index is a list of bricks: cut a window out of it");
+  return {origin_, brick_counts_, index_.data(), nullptr};
+}
 
 void BrickMap::widen_index(const Vec3i& origin, const Vec3i& brick_counts) {
   if (origin == origin_ && brick_counts == brick_counts_) return;
+  if (is_sparse_) fail("an index that is a list of bricks can't be widened");
   const Vec3i first = (origin_ - origin) / kBrickSize;
   const Vec3i last = first + brick_counts_;
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,14 +105,10 @@ void BrickMap::widen_index(const Vec3i& origin, const Vec3i& brick_counts) {
 }
 
 float BrickMap::value(const Vec3i& voxel) const {
-  const Vec3i brick(brick_of(voxel.x - origin_.x), brick_of(voxel.y - origin_.y),
-                    brick_of(voxel.z - origin_.z));
-  for (int axis = 0; axis < 3; ++axis) {
-    if (brick[axis] < 0 || brick[axis] >= brick_counts_[axis]) return 0.0F;
-  }
-  const std::size_t entry =
-      (static_cast<std::size_t>(brick.x) * brick_counts_.y + brick.y) * brick_counts_.z + brick.z;
-  return voxels_[std::size_t{index_[entry]} * kBrickVoxels + voxel_offset(voxel)];
+  const Vec3i place(brick_of(voxel.x), brick_of(voxel.y), brick_of(voxel.z));
+  return voxels_.empty()
+             ? 0.0F
+             : voxels_[std::size_t{brick_at(place)} * kBrickVoxels + voxel_offset(voxel)];
 }
 
 double BrickMap::interpolate(const Vec3d& point) const {
@@ -75,15 +128,16 @@ double BrickMap::interpolate(const Vec3d& point) const {
 }
 
 std::size_t BrickMap::memory_bytes() const {
-  return index_.capacity() * sizeof(index_[0]) + voxels_.capacity() * sizeof(voxels_[0]);
+  return index_.capacity() * sizeof(index_[0]) + listed_.capacity() * sizeof(listed_[0]) +
+         voxels_.capacity() * sizeof(voxels_[0]);
 }
 
 BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max,
-                                 std::size_t brick_capacity) {
+                                 std::size_t brick_capacity, std::size_t places) {
   map_.active_min_ = active_min;
   map_.active_max_ = active_max;
   if (map_.empty()) return;
-  int64_t entries = 1;
+  double entries = 1;
   for (int axis = 0; axis < 3; ++axis) {
     constexpr int kLimit = 1 << 29;
     if (active_min[axis] < -kLimit || active_max[axis] > kLimit) {
@@ -96,18 +150,28 @@ BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_ma
     map_.origin_[axis] = first * BrickMap::kBrickSize;
     map_.brick_counts_[axis] = last - first + 1;
     entries *= map_.brick_counts_[axis];
-    if (entries > kMaxIndexEntries) {
-      fail(
-          "the active voxels span {} x {} x {}, too many for a dense index of bricks: crop the "
-          "grid "
-          "or split it into several",
-          active_max.x - active_min.x + 1, active_max.y - active_min.y + 1,
-          active_max.z - active_min.z + 1);
-    }
   }
-  map_.index_.resize(static_cast<std::size_t>(entries));
+  map_.is_sparse_ = places != kUnknown && !is_worth_an_index(entries, static_cast<double>(places));
+  if (map_.is_sparse_ ? places > kMaxListed : entries > kMaxIndexEntries) {
+    fail(
+        "the active voxels span {} x {} x {}, too many for {}: crop the grid or split it into "
+        "several",
+        active_max.x - active_min.x + 1, active_max.y - active_min.y + 1,
+        active_max.z - active_min.z + 1,
+        map_.is_sparse_ ? fmt::format("an index of {} bricks", places) : "a dense index of bricks");
+  }
+  if (!map_.is_sparse_) map_.index_.resize(static_cast<std::size_t>(entries));
   map_.voxels_.reserve((brick_capacity + 1) * BrickMap::kBrickVoxels);
   new_brick();  // brick 0, the empty one
+}
+
+std::size_t BrickMapBuilder::PlaceHash::operator()(const Vec3i& place) const {
+  uint64_t hash = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    hash = (hash ^ static_cast<uint32_t>(place[axis])) * 0x9E3779B97F4A7C15U;
+    hash ^= hash >> 32;
+  }
+  return hash;
 }
 
 uint32_t& BrickMapBuilder::entry(const Vec3i& brick) {
@@ -119,6 +183,7 @@ uint32_t& BrickMapBuilder::entry(const Vec3i& brick) {
            brick.z);
     }
   }
+  if (map_.is_sparse_) return listed_[brick];
   const Vec3i& counts = map_.brick_counts_;
   return map_.index_[(static_cast<std::size_t>(place.x) * counts.y + place.y) * counts.z + place.z];
 }
@@ -172,6 +237,10 @@ void BrickMapBuilder::add_constant_bricks(const Vec3i& begin, const Vec3i& end, 
   const int run = end.z - begin.z;
   for (int x = begin.x; x < end.x; ++x) {
     for (int y = begin.y; y < end.y; ++y) {
+      if (map_.is_sparse_) {
+        for (int z = begin.z; z < end.z; ++z) entry(Vec3i(x, y, z)) = found->second;
+        continue;
+      }
       entry(Vec3i(x, y, end.z - 1)) = found->second;  // checks that the run ends within the index
       std::fill_n(&entry(Vec3i(x, y, begin.z)), run, found->second);
     }
@@ -196,6 +265,14 @@ void BrickMapBuilder::set_active_bounds(const Vec3i& active_min, const Vec3i& ac
   map_.active_max_ = active_max;
 }
 
-BrickMap BrickMapBuilder::finish() && { return std::move(map_); }
+BrickMap BrickMapBuilder::finish() && {
+  map_.listed_.reserve(listed_.size());
+  for (const auto& [place, brick] : listed_) {
+    if (brick != 0) map_.listed_.push_back({place, brick});
+  }
+  std::sort(map_.listed_.begin(), map_.listed_.end(),
+            [](const auto& a, const auto& b) { return comes_before(a.place, b.place); });
+  return std::move(map_);
+}
 
 }  // namespace freepath

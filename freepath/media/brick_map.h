@@ -1,8 +1,9 @@
 #pragma once
-/// @file The store of voxels: 8³ bricks behind a dense index.
+/// @file The store of voxels: 8³ bricks behind an index.
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -12,8 +13,29 @@
 
 namespace freepath {
 
-/// A sparse grid of floats: a dense index of 8³ bricks over the active bounds, and all bricks in
-/// one array. Brick 0 is the empty one (all zero). A brick of one constant value is stored once.
+/// A brick at its place in the grid.
+struct PlacedBrick {
+  Vec3i place;         ///< Coordinates of voxels divided by 8 (floor) [index].
+  uint32_t brick = 0;  ///< Its number.
+};
+
+/// A dense index of bricks over a box of a map, its own or a part cut out of it.
+struct BrickWindow {
+  Vec3i origin{0};                  ///< First voxel, a multiple of 8 [index].
+  Vec3i brick_counts{0};            ///< Along each axis.
+  const uint32_t* index = nullptr;  ///< Brick of each entry, x slowest, as BrickMap::index().
+  std::shared_ptr<const std::vector<uint32_t>> cut_out{};  ///< Holds it, where it is no map's own.
+
+  std::size_t entry_count() const {
+    return std::size_t(brick_counts.x) * std::size_t(brick_counts.y) * std::size_t(brick_counts.z);
+  }
+};
+
+/// A sparse grid of floats: an index of 8³ bricks over the active bounds, and all bricks in one
+/// array. Brick 0 is the empty one (all zero). A brick of one constant value is stored once.
+///
+/// The index is dense where that is no waste. Of few bricks far apart it is a list of them instead,
+/// so that memory and time follow the bricks and not the box around them.
 ///
 /// The centre of voxel (i,j,k) is the point (i,j,k) of index space. The index covers the bounds of
 /// the active voxels grown by two on every side (or more), so that a tap of the trilinear filter
@@ -34,13 +56,32 @@ class BrickMap {
   /// Bricks of the index along each axis.
   const Vec3i& brick_counts() const { return brick_counts_; }
 
-  /// Brick of each index entry, x slowest: entry = (bx · ny + by) · nz + bz.
+  /// Whether the index is a list of bricks.
+  bool is_sparse() const { return is_sparse_; }
+  /// Brick of each entry of a dense index, x slowest: entry = (bx · ny + by) · nz + bz. Empty where
+  /// the index is a list.
   std::span<const uint32_t> index() const { return index_; }
+  /// Bricks of an index that is a list, in the order of their places, x slowest. Empty where it is
+  /// dense.
+  std::span<const PlacedBrick> listed_bricks() const { return listed_; }
+  /// Calls f(PlacedBrick) for every brick but the empty one, in the order of places, x slowest.
+  template <class Function>
+  void for_each_brick(Function f) const;
+  /// The number of a brick; 0, the empty one, outside.
+  /// @param place coordinates of voxels divided by 8 (floor) [index]
+  uint32_t brick_at(const Vec3i& place) const;
+  /// A dense index over the bricks of the half-open box [begin, end) of places; its time and memory
+  /// are those of the box.
+  /// @throws Error for a box of more bricks than an index may have
+  BrickWindow window(const Vec3i& begin, const Vec3i& end) const;
+  /// The dense index of the whole map.
+  /// @throws Error where the map has a list
+  BrickWindow window() const;
   /// Voxels of all bricks; voxel (x,y,z) of brick b is at b·512 + 64x + 8y + z.
   std::span<const float> voxels() const { return voxels_; }
   std::size_t brick_count() const { return voxels_.size() / kBrickVoxels; }
 
-  /// Puts the same voxels behind an index of more bricks, as other maps may have.
+  /// Puts the same voxels behind a dense index of more bricks, as other maps may have.
   /// @param origin first voxel of the first brick, a multiple of 8 [index]
   /// @param brick_counts the present bricks must be among these
   void widen_index(const Vec3i& origin, const Vec3i& brick_counts);
@@ -57,21 +98,53 @@ class BrickMap {
  private:
   friend class BrickMapBuilder;
   Vec3i active_min_{0}, active_max_{-1}, origin_{0}, brick_counts_{0};
+  bool is_sparse_ = false;
   std::vector<uint32_t, PageAllocator<uint32_t>> index_;
+  std::vector<PlacedBrick> listed_;
   std::vector<float, PageAllocator<float>> voxels_;
 };
+
+template <class Function>
+void BrickMap::for_each_brick(Function f) const {
+  for (const PlacedBrick& listed : listed_) f(listed);
+  const Vec3i first = origin_ / kBrickSize;
+  const uint32_t* entry = index_.data();
+  if (is_sparse_) return;
+  for (int x = 0; x < brick_counts_.x; ++x) {
+    for (int y = 0; y < brick_counts_.y; ++y) {
+      for (int z = 0; z < brick_counts_.z; ++z, ++entry) {
+        if (*entry != 0) f(PlacedBrick{first + Vec3i(x, y, z), *entry});
+      }
+    }
+  }
+}
+
+/// Whether a dense index of so many entries for so many bricks is small, or full enough to be no
+/// waste.
+constexpr bool is_worth_an_index(double entries, double bricks) {
+  constexpr double kFewEntries = 1 << 16;      // 320³ voxels
+  constexpr double kLargestIndex = 1 << 26;    // 256 MiB, some 3200³ voxels
+  constexpr double kEntriesForEachBrick = 64;  // an eighth of the memory of its voxels
+  return entries <= kLargestIndex &&
+         (entries <= kFewEntries || entries <= kEntriesForEachBrick * bricks);
+}
 
 /// Fills a BrickMap brick by brick.
 ///
 /// @note Brick coordinates are voxel coordinates divided by 8 (floor), as OpenVDB's leaf origins.
 class BrickMapBuilder {
  public:
+  /// How many bricks there will be is not known: the index is dense.
+  static constexpr std::size_t kUnknown = 0;
+
   /// @param active_min,active_max inclusive bounds of the active voxels, or of the bricks that hold
   ///   them [index]
   /// @param brick_capacity how many distinct bricks to reserve; more may be added
-  /// @throws Error if the bounds need an index larger than kMaxIndexEntries, or more voxels than a
-  ///   32-bit offset can address
-  BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max, std::size_t brick_capacity);
+  /// @param places how many bricks will be set, those of one constant value each counted: few of
+  ///   them in large bounds get a list for an index
+  /// @throws Error if the bounds and the bricks in them need too large an index
+  BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max, std::size_t brick_capacity,
+                  std::size_t places = kUnknown);
 
   /// The 512 voxels of a new brick, zero at first, to be written (offset 64x + 8y + z). The span is
   /// valid until the next call.
@@ -92,13 +165,18 @@ class BrickMapBuilder {
   BrickMap finish() &&;
 
  private:
+  struct PlaceHash {
+    std::size_t operator()(const Vec3i& place) const;
+  };
+
   uint32_t& entry(const Vec3i& brick);
   uint32_t new_brick();
   void check_brick_count(std::size_t count) const;
 
   BrickMap map_;
-  std::unordered_map<uint32_t, uint32_t> constants_;  // bits of the value → brick
-  std::vector<bool> shared_;                          // bricks that several entries may name
+  std::unordered_map<Vec3i, uint32_t, PlaceHash> listed_;  // place → brick, of an index that is one
+  std::unordered_map<uint32_t, uint32_t> constants_;       // bits of the value → brick
+  std::vector<bool> shared_;                               // bricks that several entries may name
 };
 
 }  // namespace freepath

@@ -57,14 +57,42 @@ double voxel_edge(const Matrix4d& index_to_world) {
   return std::cbrt(std::abs(index_to_world.determinant()));
 }
 
-/// @return Medium::walk_cells()
-Medium::WalkCells mark_empty_cells(const SuperVoxels& cells) {
-  Medium::WalkCells records(cells.maxima.begin(), cells.maxima.end());
+/// @param records of those cells in Medium::walk_cells(), to be set
+void mark_empty_cells(const SuperVoxels& cells, float* records) {
+  std::copy(cells.maxima.begin(), cells.maxima.end(), records);
   for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
     const int radius = cells.empty_radius[cell];
     if (radius > 0) records[cell * cells.components] = static_cast<float>(-radius);
   }
-  return records;
+}
+
+/// World → walk space, given world → place.
+AffineMap scaled_map(const Matrix4d& world_to_place, const Vec3i& first, int cell_size,
+                     const Vec3d& origin) {
+  const double scale = 1.0 / cell_size;
+  AffineMap map;
+  for (int to = 0; to < 3; ++to) {
+    double offset = (world_to_place[3][to] - first[to]) * scale;
+    for (int from = 0; from < 3; ++from) {
+      const double factor = world_to_place[from][to] * scale;
+      offset += origin[from] * factor;
+      map.linear[from][to] = static_cast<float>(factor);
+    }
+    map.offset[to] = static_cast<float>(offset);
+  }
+  return map;
+}
+
+/// Walk space → place, given that of the voxels that its cells are made of.
+AffineMap voxels_from_cells(const Matrix4d& places, int cell_size) {
+  AffineMap map;
+  for (int to = 0; to < 3; ++to) {
+    for (int from = 0; from < 3; ++from) {
+      map.linear[from][to] = static_cast<float>(places[from][to] * cell_size);
+    }
+    map.offset[to] = static_cast<float>(places[3][to]);
+  }
+  return map;
 }
 
 }  // namespace
@@ -83,8 +111,7 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
   } else {
     build_from_voxels(super_voxel);
   }
-  walk_cells_ = mark_empty_cells(super_voxels_);
-  set_world_to_walk(world_to_index);
+  set_world_to_place(world_to_index);
 }
 
 std::vector<const Field*> Medium::fields() const {
@@ -93,37 +120,47 @@ std::vector<const Field*> Medium::fields() const {
   return fields;
 }
 
-void Medium::set_world_to_walk(const std::optional<Matrix4d>& world_to_index) {
+void Medium::set_world_to_place(const std::optional<Matrix4d>& world_to_index) {
   if (world_to_index && !aligned()) {
     fail("fields that differ in transform or bounds can't be given one map from the world");
   }
-  Matrix4d to_index;
   if (world_to_index) {
-    to_index = *world_to_index;
+    world_to_place_ = *world_to_index;
   } else {
     const double determinant = space_.index_to_world.determinant();
     if (!std::isfinite(determinant) || determinant == 0) {
       fail("grid '{}': its transform has no inverse", components_[0].density->name);
     }
-    to_index = space_.index_to_world.inverse();
+    world_to_place_ = space_.index_to_world.inverse();
   }
-  const double scale = 1.0 / super_voxels_.cell_size;
   for (int to = 0; to < 3; ++to) {
-    for (int from = 0; from < 3; ++from) world_to_walk_[from][to] = to_index[from][to] * scale;
-    world_to_walk_[3][to] = (to_index[3][to] - space_.origin[to] + 0.5) * scale;
+    world_to_place_[3][to] = world_to_place_[3][to] - space_.origin[to] + 0.5;
   }
 }
 
 void Medium::build_from_voxels(int super_voxel) {
   space_ = make_walk_space(fields());
-  std::vector<PlacedVoxels> densities;
   std::vector<float> extinction;
   const double edge = voxel_edge(space_.index_to_world);
-  for (std::size_t k = 0; k < components_.size(); ++k) {
-    densities.push_back({&components_[k].density->voxels, space_.to_component[k]});
-    extinction.push_back(static_cast<float>(largest(components_[k].sigma_t()) * edge));
+  for (const Component& component : components_) {
+    extinction.push_back(static_cast<float>(largest(component.sigma_t()) * edge));
   }
-  super_voxels_ = build_super_voxels(densities, space_.voxel_counts, extinction, super_voxel);
+  WalkParts parts = make_walk_parts(space_, fields(), extinction, super_voxel);
+  part_tree_ = std::make_shared<const BoxTree>(std::move(parts.tree));
+  set_parts(std::move(parts.parts));
+}
+
+void Medium::set_parts(std::vector<WalkPart> parts) {
+  std::size_t records = 0;
+  for (WalkPart& part : parts) {
+    part.first_record = records;
+    records += part.cells.maxima.size();
+  }
+  walk_cells_ = WalkCells(records);
+  for (const WalkPart& part : parts) {
+    mark_empty_cells(part.cells, walk_cells_.data() + part.first_record);
+  }
+  parts_ = std::make_shared<const std::vector<WalkPart>>(std::move(parts));
 }
 
 void Medium::build_from_functions() {
@@ -132,9 +169,13 @@ void Medium::build_from_functions() {
   space_.index_to_world = components_[0].density->index_to_world;
   space_.voxel_counts = cells;
   space_.to_component.assign(components_.size(), Matrix4d());
-  super_voxels_.cell_size = 1;
-  super_voxels_.counts = cells;
-  super_voxels_.components = static_cast<int>(components_.size());
+  WalkPart part;
+  part.box = {Vec3i(0), cells};
+  part.windows.resize(components_.size());
+  SuperVoxels& super_voxels = part.cells;
+  super_voxels.cell_size = 1;
+  super_voxels.counts = cells;
+  super_voxels.components = static_cast<int>(components_.size());
   const Vec3f edge = first.box.size() / Vec3f(cells);
   for (int x = 0; x < cells.x; ++x) {
     for (int y = 0; y < cells.y; ++y) {
@@ -147,22 +188,26 @@ void Medium::build_from_functions() {
             fail("density function '{}' has the bounds {} to {} in the cell at ({}, {}, {})",
                  component.density->name, minimum, maximum, low.x, low.y, low.z);
           }
-          super_voxels_.minima.push_back(minimum);
-          super_voxels_.maxima.push_back(maximum);
+          super_voxels.minima.push_back(minimum);
+          super_voxels.maxima.push_back(maximum);
           empty = empty && maximum == 0;
         }
-        super_voxels_.empty_radius.push_back(empty ? 1 : 0);
+        super_voxels.empty_radius.push_back(empty ? 1 : 0);
       }
     }
   }
+  set_parts({std::move(part)});
 }
 
 Medium Medium::with_scaled_bounds(float scale) const {
   if (!(scale > 0) || !std::isfinite(scale)) fail("bounds can't be scaled by {}", scale);
   Medium scaled = *this;
-  for (float& maximum : scaled.super_voxels_.maxima) maximum *= scale;
-  for (float& minimum : scaled.super_voxels_.minima) minimum /= scale;
-  scaled.walk_cells_ = mark_empty_cells(scaled.super_voxels_);
+  std::vector<WalkPart> parts = *parts_;
+  for (WalkPart& part : parts) {
+    for (float& maximum : part.cells.maxima) maximum *= scale;
+    for (float& minimum : part.cells.minima) minimum /= scale;
+  }
+  scaled.set_parts(std::move(parts));
   return scaled;
 }
 
@@ -172,56 +217,85 @@ Medium Medium::clipped_to_voxels() const {
   return clipped;
 }
 
+std::size_t Medium::super_voxel_count() const {
+  std::size_t count = 0;
+  for (const WalkPart& part : parts()) count += part.cells.cell_count();
+  return count;
+}
+
+std::size_t Medium::memory_bytes() const {
+  std::size_t bytes = walk_cells_.size() * sizeof(float);
+  for (const WalkPart& part : parts()) bytes += part.memory_bytes();
+  return bytes;
+}
+
 AffineMap Medium::world_to_walk(const Vec3d& origin) const {
-  AffineMap map;
-  for (int to = 0; to < 3; ++to) {
-    double offset = world_to_walk_[3][to];
-    for (int from = 0; from < 3; ++from) {
-      offset += origin[from] * world_to_walk_[from][to];
-      map.linear[from][to] = static_cast<float>(world_to_walk_[from][to]);
-    }
-    map.offset[to] = static_cast<float>(offset);
-  }
-  return map;
+  return scaled_map(world_to_place_, Vec3i(0), super_voxels().cell_size, origin);
+}
+
+AffineMap Medium::world_to_walk(const WalkPart& part, const Vec3d& origin) const {
+  return scaled_map(world_to_place_, part.first, part.cells.cell_size, origin);
+}
+
+Vec3d Medium::middle_of(const WalkPart& part) const {
+  return (part.middle() + Vec3d(space_.origin) - Vec3d(0.5)) * space_.index_to_world;
 }
 
 AffineMap Medium::walk_to_component(std::size_t component) const {
-  const Matrix4d& places = space_.to_component[component];
-  AffineMap map;
-  for (int to = 0; to < 3; ++to) {
-    for (int from = 0; from < 3; ++from) {
-      map.linear[from][to] = static_cast<float>(places[from][to] * super_voxels_.cell_size);
-    }
-    map.offset[to] = static_cast<float>(places[3][to]);
-  }
-  return map;
+  return voxels_from_cells(space_.to_component[component], super_voxels().cell_size);
 }
 
-AffineMap Medium::walk_to_field(const Field& field) const {
+AffineMap Medium::walk_to_component(const WalkPart& part, std::size_t component) const {
+  const auto& field = components_[component].density;
+  return voxels_from_cells(
+      to_window(part, space_.to_component[component], field->voxels, part.windows[component]),
+      part.cells.cell_size);
+}
+
+/// Along rows: place in the grid → index of the grid → world → place in the field.
+Matrix4d Medium::place_to_field(const Field& field) const {
   const double determinant = field.index_to_world.determinant();
   if (!std::isfinite(determinant) || determinant == 0) {
     fail("grid '{}': its transform has no inverse", field.name);
   }
-  // Along rows: walk space → place in the grid → index of the grid → world → index of the field.
   Matrix4d place_to_index;
   place_to_index.setTranslation(Vec3d(space_.origin) - Vec3d(0.5));
-  const Matrix4d places = place_to_index * space_.index_to_world * field.index_to_world.inverse();
-  AffineMap map;
-  for (int to = 0; to < 3; ++to) {
-    for (int from = 0; from < 3; ++from) {
-      map.linear[from][to] = static_cast<float>(places[from][to] * super_voxels_.cell_size);
-    }
-    map.offset[to] = static_cast<float>(places[3][to] - field.voxels.origin()[to] + 0.5);
-  }
-  return map;
+  Matrix4d places = place_to_index * space_.index_to_world * field.index_to_world.inverse();
+  for (int to = 0; to < 3; ++to) places[3][to] = places[3][to] - field.voxels.origin()[to] + 0.5;
+  return places;
+}
+
+AffineMap Medium::walk_to_field(const Field& field) const {
+  return voxels_from_cells(place_to_field(field), super_voxels().cell_size);
+}
+
+AffineMap Medium::walk_to_field(const WalkPart& part, const Field& field,
+                                BrickWindow& window) const {
+  const Matrix4d places = place_to_field(field);
+  window = window_of(field.voxels, part.box, places);
+  return voxels_from_cells(to_window(part, places, field.voxels, window), part.cells.cell_size);
 }
 
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
-  if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels_.counts)};
+  if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels().counts)};
   const double reach = is_clipped_ || interpolation == Interpolation::kNearest ? 0.5 : 1.0;
-  const double scale = 1.0 / super_voxels_.cell_size;
+  const double scale = 1.0 / super_voxels().cell_size;
   const Box3d places = space_.bounds(fields(), reach);
   return {Vec3f(places.min * scale), Vec3f(places.max * scale)};
+}
+
+Box3f Medium::walk_bounds(const WalkPart& part, Interpolation interpolation) const {
+  if (parts().size() == 1 && part_tree().leaves().empty()) return walk_bounds(interpolation);
+  const double reach = is_clipped_ || interpolation == Interpolation::kNearest ? 0.5 : 1.0;
+  const Box3d places = space_.bounds(fields(), reach);
+  Box3f box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::max(places.min[axis], double(part.box.begin[axis]));
+    const double high = std::min(places.max[axis], double(part.box.end[axis]));
+    box.min[axis] = static_cast<float>((low - part.first[axis]) / part.cells.cell_size);
+    box.max[axis] = static_cast<float>((high - part.first[axis]) / part.cells.cell_size);
+  }
+  return box;
 }
 
 Box3d Medium::world_bounds() const {

@@ -13,6 +13,7 @@
 #include "freepath/media/page_allocator.h"
 #include "freepath/media/phase/phase_function.h"
 #include "freepath/media/super_voxels.h"
+#include "freepath/media/walk_part.h"
 #include "freepath/media/walk_space.h"
 
 namespace freepath {
@@ -70,29 +71,51 @@ class Medium {
   Medium clipped_to_voxels() const;
 
   const std::vector<Component>& components() const { return components_; }
-  const SuperVoxels& super_voxels() const { return super_voxels_; }
+  /// The parts that walks take place in, one after the other: one, unless the voxels lie far
+  /// apart.
+  const std::vector<WalkPart>& parts() const { return *parts_; }
+  /// The tree that rays meet several parts by; empty where one is all.
+  const BoxTree& part_tree() const { return *part_tree_; }
+  /// Super-voxels of the first part, which most media have alone.
+  const SuperVoxels& super_voxels() const { return parts()[0].cells; }
+  /// Super-voxels of all parts.
+  std::size_t super_voxel_count() const;
+  /// Bytes of what walks read besides the voxels and their own indices.
+  std::size_t memory_bytes() const;
   /// Whether all components share transform and layout of bricks, so that one voxel serves all.
   bool aligned() const { return space_.aligned; }
 
   /// What a step of a walk reads of a super-voxel: the maxima of the components, or, where all of
-  /// them are 0, the empty radius negated in place of the first. Entry: cell · components.
+  /// them are 0, the empty radius negated in place of the first. Entry: the part's first record +
+  /// cell · components.
   using WalkCells = std::vector<float, PageAllocator<float>>;
   const WalkCells& walk_cells() const { return walk_cells_; }
 
   /// World space → walk space, whose unit is the edge of a super-voxel and whose cells are those of
-  /// the super-voxels.
+  /// the super-voxels. With several parts it is the space of the whole, in units of the first's
+  /// super-voxels; what a walk is in are the spaces of the parts, counted from their first voxels.
   /// @param origin the point of the world that positions are relative to: where it is near the
   ///   medium, single precision holds them however far from the world's origin that is
   AffineMap world_to_walk(const Vec3d& origin = Vec3d(0)) const;
+  AffineMap world_to_walk(const WalkPart& part, const Vec3d& origin) const;
+  /// World space → place in the grid of voxels that the parts' boxes are in.
+  const Matrix4d& world_to_place() const { return world_to_place_; }
+  /// The point of the world in the middle of a part.
+  Vec3d middle_of(const WalkPart& part) const;
   /// Walk space → place in a component's voxels, counted from the first of its index; the centre of
   /// voxel i is at i + 1/2.
   AffineMap walk_to_component(std::size_t component) const;
+  AffineMap walk_to_component(const WalkPart& part, std::size_t component) const;
   /// Walk space → place in the voxels of another field, which may stand anyhow in the world.
   /// @throws Error if the field's transform has no inverse
   AffineMap walk_to_field(const Field& field) const;
+  /// The same, of a part.
+  /// @param window what of the field the part reads: set to that
+  AffineMap walk_to_field(const WalkPart& part, const Field& field, BrickWindow& window) const;
 
   /// Where the density may differ from 0 [walk space], which depends on the filter's reach.
   Box3f walk_bounds(Interpolation interpolation) const;
+  Box3f walk_bounds(const WalkPart& part, Interpolation interpolation) const;
   /// Bounds of the active voxels [world].
   Box3d world_bounds() const;
 
@@ -107,13 +130,16 @@ class Medium {
   std::vector<const Field*> fields() const;
   void build_from_voxels(int super_voxel);
   void build_from_functions();
-  void set_world_to_walk(const std::optional<Matrix4d>& world_to_index);
+  void set_world_to_place(const std::optional<Matrix4d>& world_to_index);
+  void set_parts(std::vector<WalkPart> parts);
+  Matrix4d place_to_field(const Field& field) const;
 
   std::vector<Component> components_;
-  SuperVoxels super_voxels_;
+  std::shared_ptr<const std::vector<WalkPart>> parts_;
+  std::shared_ptr<const BoxTree> part_tree_ = std::make_shared<const BoxTree>();
   WalkCells walk_cells_;
   WalkSpace space_;
-  Matrix4d world_to_walk_;
+  Matrix4d world_to_place_;
   bool is_clipped_ = false;
 };
 

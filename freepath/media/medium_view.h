@@ -61,10 +61,23 @@ struct MediumView {
   int source(int channel) const { return channel < channels ? channel : channel % channels; }
 };
 
+/// The view of a medium that is one part, or of the first of several.
 /// @param channels of its components; their fields must live as long. A walk of more channels than
 ///   these meets them again from the first one on.
 /// @param origin what positions of rays are relative to [world]
 MediumView view_of(const Medium& medium, Interpolation interpolation,
                    const MediumChannels& channels, const Vec3d& origin = Vec3d(0));
+
+/// What the components' radiance points at in a part of a medium; null where emission does not
+/// vary.
+std::shared_ptr<const std::vector<RadianceView>> radiance_views_of(const Medium& medium,
+                                                                   const WalkPart& part,
+                                                                   const MediumChannels& channels);
+
+/// Turns the view of a medium into that of one of its parts.
+/// @param origin what positions of rays are relative to [world]
+/// @param radiance radiance_views_of() that part
+void show_part(const Medium& medium, const WalkPart& part, const Vec3d& origin,
+               std::shared_ptr<const std::vector<RadianceView>> radiance, MediumView& view);
 
 }  // namespace freepath

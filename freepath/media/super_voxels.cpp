@@ -4,17 +4,16 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "freepath/base/error.h"
-#include "freepath/media/voxel_range.h"
 
 namespace freepath {
 namespace {
 
-constexpr std::size_t kFewCells = std::size_t{4} << 20;
 constexpr std::size_t kMaxNumbers = std::size_t{1} << 30;  // lanes address them by 32 bits
 
 std::size_t cell_index(const Vec3i& counts, int x, int y, int z) {
@@ -60,7 +59,7 @@ VoxelBox voxels_of_cell(const PlacedVoxels& density, const Vec3i& corner, int ce
       const double along = map[from][axis] * cell_size;
       (along < 0 ? low : high) += along;
     }
-    const double beyond = density.map->brick_counts()[axis] * BrickMap::kBrickSize + 1.0;
+    const double beyond = density.window.brick_counts[axis] * BrickMap::kBrickSize + 1.0;
     const auto inside = [&](double voxel) {
       return static_cast<int>(std::clamp(voxel, -1.0, beyond));
     };
@@ -73,9 +72,6 @@ VoxelBox voxels_of_cell(const PlacedVoxels& density, const Vec3i& corner, int ce
 SuperVoxels finest_cells(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts,
                          int cell_size) {
   SuperVoxels cells = empty_cells(voxel_counts, cell_size, densities.size());
-  std::vector<VoxelRanges> ranges;
-  ranges.reserve(densities.size());
-  for (const PlacedVoxels& density : densities) ranges.emplace_back(*density.map);
   tbb::parallel_for(tbb::blocked_range<int>(0, cells.counts.x), [&](const auto& slab) {
     for (int x = slab.begin(); x < slab.end(); ++x) {
       for (int y = 0; y < cells.counts.y; ++y) {
@@ -84,7 +80,8 @@ SuperVoxels finest_cells(std::span<const PlacedVoxels> densities, const Vec3i& v
           for (std::size_t k = 0; k < densities.size(); ++k) {
             const VoxelBox box =
                 voxels_of_cell(densities[k], Vec3i(x, y, z) * cell_size, cell_size);
-            const ValueRange range = ranges[k].of_box(box.begin, box.end);
+            const ValueRange range =
+                densities[k].ranges->of_box(densities[k].window, box.begin, box.end);
             cells.minima[cell + k] = range.minimum;
             cells.maxima[cell + k] = range.maximum;
           }
@@ -136,6 +133,54 @@ double expected_cost(const SuperVoxels& cells, std::span<const float> extinction
   return volume * (cost.lookup * lookups + cost.step * steps);
 }
 
+/// min over j of max(|i - j|, line[j]) for all i, in a time that is linear in the line.
+///
+/// Of the places up to i, one counts only while no later one has a smaller value: the rest wait in
+/// a queue, older ones with smaller values. Its front is the best until a later place is as good,
+/// and from then on never again. The other half is the same from the other end.
+class NearestInLine {
+ public:
+  void replace(std::vector<int32_t>& line) {
+    result_ = line;
+    waiting_.resize(line.size());
+    for (const bool backward : {false, true}) {
+      front_ = back_ = 0;
+      for (std::size_t step = 0; step < line.size(); ++step) {
+        const std::size_t place = backward ? line.size() - 1 - step : step;
+        result_[place] = std::min(result_[place], best_of(static_cast<int32_t>(step), line[place]));
+      }
+    }
+    line.swap(result_);
+  }
+  /// Places looked at so far.
+  std::size_t steps() const { return steps_; }
+
+ private:
+  struct Place {
+    int32_t step;
+    int32_t value;
+    int32_t at(int32_t here) const { return std::max(here - step, value); }
+  };
+
+  /// Takes the place of a step, and gives the least of those up to it.
+  int32_t best_of(int32_t step, int32_t value) {
+    for (; back_ > front_ && waiting_[back_ - 1].value >= value; ++steps_) --back_;
+    waiting_[back_++] = {step, value};
+    ++steps_;
+    for (; back_ - front_ > 1 && waiting_[front_ + 1].at(step) <= waiting_[front_].at(step);
+         ++steps_) {
+      ++front_;
+    }
+    return waiting_[front_].at(step);
+  }
+
+  std::vector<Place> waiting_;
+  std::size_t front_ = 0;  ///< Of the queue,
+  std::size_t back_ = 0;   ///< and one past its last.
+  std::vector<int32_t> result_;
+  std::size_t steps_ = 0;
+};
+
 /// Chebyshev distance to the nearest cell that is not empty, by one pass along each axis: the
 /// distance is the maximum over the axes, so it separates.
 void fill_empty_radius(SuperVoxels& cells) {
@@ -149,6 +194,7 @@ void fill_empty_radius(SuperVoxels& cells) {
       if (cells.maxima[cell * components + k] > 0) radius[cell] = 0;
     }
   }
+  std::atomic<std::size_t> steps = 0;
   const std::size_t strides[3] = {std::size_t(counts.y) * counts.z, std::size_t(counts.z), 1};
   for (int axis = 0; axis < 3; ++axis) {
     const int length = counts[axis];
@@ -157,28 +203,21 @@ void fill_empty_radius(SuperVoxels& cells) {
     const std::size_t stride = strides[axis];
     tbb::parallel_for(tbb::blocked_range<int>(0, other1), [&](const auto& rows) {
       std::vector<int32_t> line(length);
-      std::vector<int32_t> result(length);
+      NearestInLine nearest;
       for (int a = rows.begin(); a < rows.end(); ++a) {
         for (int b = 0; b < other2; ++b) {
           int32_t* first =
               radius.data() + a * strides[(axis + 1) % 3] + b * strides[(axis + 2) % 3];
           for (int i = 0; i < length; ++i) line[i] = first[i * stride];
           if (*std::min_element(line.begin(), line.end()) == kFar) continue;
-          // min over j of max(|i-j|, line[j]); lines are short and the search stops early.
-          for (int i = 0; i < length; ++i) {
-            int32_t best = line[i];
-            for (int reach = 1; reach < best; ++reach) {
-              if (i >= reach) best = std::min(best, std::max(reach, line[i - reach]));
-              if (i + reach < length) best = std::min(best, std::max(reach, line[i + reach]));
-              if (i < reach && i + reach >= length) break;
-            }
-            result[i] = best;
-          }
-          for (int i = 0; i < length; ++i) first[i * stride] = result[i];
+          nearest.replace(line);
+          for (int i = 0; i < length; ++i) first[i * stride] = line[i];
         }
       }
+      steps += nearest.steps();
     });
   }
+  cells.radius_steps = steps;
 }
 
 void check_size(int wanted) {
@@ -191,13 +230,11 @@ void check_size(int wanted) {
 }
 
 /// The size that the others are made from: 4 where it is asked for or makes few cells, else 8, or
-/// more where components with voxels of very different sizes would make too many of those.
-int finest_size(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts, int wanted) {
-  if (wanted == 4 || (wanted == 0 && cell_count(voxel_counts, 4) <= kFewCells)) return 4;
-  std::size_t most = kFewCells;  // or as many as the densities themselves have bricks
-  for (const PlacedVoxels& density : densities) most = std::max(most, density.map->index().size());
+/// more where that would make too many.
+int finest_size(const Vec3i& voxel_counts, int wanted, const CellLimits& limits) {
+  if (wanted == 4 || (wanted == 0 && cell_count(voxel_counts, 4) <= limits.few)) return 4;
   int size = 8;
-  while (size != wanted && cell_count(voxel_counts, size) > most) size *= 2;
+  while (size != wanted && cell_count(voxel_counts, size) > limits.most) size *= 2;
   return size;
 }
 
@@ -214,6 +251,14 @@ void check_memory(std::size_t cells, std::size_t components, int size) {
 std::size_t SuperVoxels::memory_bytes() const {
   return (minima.capacity() + maxima.capacity()) * sizeof(float) +
          empty_radius.capacity() * sizeof(int32_t);
+}
+
+void SuperVoxelSummary::merge(const SuperVoxelSummary& other) {
+  cells += other.cells;
+  occupied += other.occupied;
+  const double share = occupied == 0 ? 0 : double(other.occupied) / double(occupied);
+  mean_maximum += share * (other.mean_maximum - mean_maximum);
+  mean_minimum += share * (other.mean_minimum - mean_minimum);
 }
 
 SuperVoxelSummary summarize(const SuperVoxels& cells, int component) {
@@ -234,9 +279,9 @@ SuperVoxelSummary summarize(const SuperVoxels& cells, int component) {
 
 SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts,
                                std::span<const float> extinction, int cell_size,
-                               const SuperVoxelCost& cost) {
+                               const CellLimits& limits, const SuperVoxelCost& cost) {
   check_size(cell_size);
-  const int finest = finest_size(densities, voxel_counts, cell_size);
+  const int finest = finest_size(voxel_counts, cell_size, limits);
   check_memory(cell_count(voxel_counts, finest), densities.size(), finest);
   SuperVoxels cells = finest_cells(densities, voxel_counts, finest);
   std::optional<SuperVoxels> best;
@@ -263,10 +308,17 @@ SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Ve
 SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                std::span<const float> extinction, int cell_size,
                                const SuperVoxelCost& cost) {
+  std::vector<VoxelRanges> ranges;
+  ranges.reserve(densities.size());
   std::vector<PlacedVoxels> placed;
-  for (const BrickMap* map : densities) placed.push_back({map, Matrix4d()});
+  for (const BrickMap* map : densities) {
+    ranges.emplace_back(*map);
+    placed.push_back({&ranges.back(), map->window(), Matrix4d()});
+  }
+  const CellLimits limits{CellLimits::kFew,
+                          std::max(CellLimits::kFew, placed[0].window.entry_count())};
   return build_super_voxels(placed, densities[0]->brick_counts() * BrickMap::kBrickSize, extinction,
-                            cell_size, cost);
+                            cell_size, limits, cost);
 }
 
 }  // namespace freepath

@@ -7,6 +7,7 @@
 
 #include "freepath/base/vector.h"
 #include "freepath/media/brick_map.h"
+#include "freepath/media/voxel_range.h"
 
 namespace freepath {
 
@@ -16,8 +17,9 @@ namespace freepath {
 /// just over a cell's face still reads voxels that the cell has counted.
 ///
 /// Cell (x,y,z) covers the voxels [cell_size·x, cell_size·(x+1)) counted from the first voxel of
-/// the brick map's index, or of the WalkSpace where components have voxels of their own. Entries
-/// are stored x slowest: cell = (x · ny + y) · nz + z.
+/// the brick map's index, or of the WalkPart. Entries are stored x slowest: cell = (x · ny + y) ·
+/// nz
+/// + z.
 struct SuperVoxels {
   int cell_size = 8;          ///< Edge of a cell [voxels].
   Vec3i counts{0};            ///< Cells along each axis.
@@ -27,6 +29,8 @@ struct SuperVoxels {
   /// Chebyshev radius of the empty cube around a cell [cells]: with radius r every cell nearer than
   /// r along all axes is empty (0: the cell itself is not). A walk leaves the whole cube in a step.
   std::vector<int32_t> empty_radius;
+  /// Steps that the search for empty cubes took; in proportion to the cells.
+  std::size_t radius_steps = 0;
 
   std::size_t cell_count() const { return empty_radius.size(); }
   std::size_t memory_bytes() const;
@@ -39,6 +43,7 @@ struct SuperVoxelSummary {
   double mean_maximum = 0;   ///< Over the occupied cells.
   double mean_minimum = 0;   ///< Over the occupied cells; its share of the maximum is what a
                              ///< control of minima can decide without a look-up.
+  void merge(const SuperVoxelSummary& other);
 };
 
 SuperVoxelSummary summarize(const SuperVoxels& cells, int component = 0);
@@ -57,11 +62,20 @@ struct SuperVoxelCost {
 /// The bounds of a cell are those of the voxels that the cell's own box of places covers, grown by
 /// one. A tap of the trilinear filter reads half a voxel less far: so much a place may be off.
 struct PlacedVoxels {
-  const BrickMap* map = nullptr;
-  Matrix4d to_component;  ///< Place in the grid → place in the map; see WalkSpace.
+  const VoxelRanges* ranges = nullptr;  ///< Of the component's map.
+  BrickWindow window;                   ///< What of the map the grid reaches.
+  Matrix4d to_component;  ///< Place in the grid → place in the window; see WalkSpace.
 };
 
-/// Builds the super-voxels of densities over a grid of voxels. A voxel beyond a map is 0.
+/// How many cells are not too many.
+struct CellLimits {
+  static constexpr std::size_t kFew = std::size_t{4} << 20;
+
+  std::size_t few = kFew;   ///< So many may have 4 voxels a side,
+  std::size_t most = kFew;  ///< and so many 8 or more.
+};
+
+/// Builds the super-voxels of densities over a grid of voxels. A voxel beyond a window is 0.
 ///
 /// @param densities the components
 /// @param voxel_counts extent of the grid
@@ -69,14 +83,14 @@ struct PlacedVoxels {
 ///   of the grid [1/voxel]; only the choice of the size depends on it
 /// @param cell_size one of kSuperVoxelSizes, or 0 to take the one with the least expected cost of
 ///   a unit of length: steps cost 1.5/cell_size, look-ups the mean majorant of the cells that are
-///   not empty. Where components have voxels of very different sizes it may be larger than any of
-///   those, so that the cells are not too many.
+///   not empty. Within the limits it may be larger than any of those.
 /// @throws Error for another cell_size, or one that makes too many cells
 SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Vec3i& voxel_counts,
                                std::span<const float> extinction, int cell_size,
-                               const SuperVoxelCost& cost = {});
+                               const CellLimits& limits = {}, const SuperVoxelCost& cost = {});
 
-/// The same for densities that share origin and brick counts, whose voxels are the grid.
+/// The same for densities that share origin and brick counts, whose voxels are the grid. Their
+/// indices must be dense.
 SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                std::span<const float> extinction, int cell_size,
                                const SuperVoxelCost& cost = {});

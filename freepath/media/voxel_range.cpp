@@ -37,8 +37,13 @@ VoxelRanges::VoxelRanges(const BrickMap& map) : map_(map), bricks_(map.brick_cou
 }
 
 ValueRange VoxelRanges::of_box(const Vec3i& begin, const Vec3i& end) const {
+  return map_.is_sparse() ? of_listed(begin, end) : of_box(map_.window(), begin, end);
+}
+
+ValueRange VoxelRanges::of_box(const BrickWindow& window, const Vec3i& begin,
+                               const Vec3i& end) const {
   ValueRange range;
-  const Vec3i& counts = map_.brick_counts();
+  const Vec3i& counts = window.brick_counts;
   Vec3i first;
   Vec3i last;
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,10 +56,37 @@ ValueRange VoxelRanges::of_box(const Vec3i& begin, const Vec3i& end) const {
       for (int z = first.z; z <= last.z; ++z) {
         const std::size_t entry = (static_cast<std::size_t>(x) * counts.y + y) * counts.z + z;
         const Vec3i corner = Vec3i(x, y, z) * BrickMap::kBrickSize;
-        add_brick(map_.index()[entry], begin - corner, end - corner, range);
+        add_brick(window.index[entry], begin - corner, end - corner, range);
       }
     }
   }
+  return range;
+}
+
+ValueRange VoxelRanges::of_listed(const Vec3i& begin, const Vec3i& end) const {
+  ValueRange range;
+  const Vec3i origin = map_.origin() / BrickMap::kBrickSize;
+  Vec3i first;
+  Vec3i last;
+  double wanted = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    first[axis] = origin[axis] + (begin[axis] >> 3);
+    last[axis] = origin[axis] + ((end[axis] - 1) >> 3);
+    wanted *= last[axis] - first[axis] + 1;
+  }
+  const std::span<const PlacedBrick> bricks = map_.listed_bricks();
+  auto listed = std::partition_point(bricks.begin(), bricks.end(), [&](const PlacedBrick& brick) {
+    return brick.place.x < first.x;
+  });
+  double found = 0;
+  for (; listed != bricks.end() && listed->place.x <= last.x; ++listed) {
+    const Vec3i& place = listed->place;
+    if (place.y < first.y || place.y > last.y || place.z < first.z || place.z > last.z) continue;
+    const Vec3i corner = (place - origin) * BrickMap::kBrickSize;
+    add_brick(listed->brick, begin - corner, end - corner, range);
+    found += 1;
+  }
+  if (found < wanted) range.add(0.0F);
   return range;
 }
 

@@ -30,11 +30,16 @@ class VoxelRanges {
  public:
   explicit VoxelRanges(const BrickMap& map);
 
+  const BrickMap& map() const { return map_; }
+
   /// Range of the voxels of the half-open box [begin, end), counted from the first of the index;
-  /// those beyond the index are 0.
+  /// those beyond the index are 0. Of a list of bricks the time is that of those in the box's slab.
   ValueRange of_box(const Vec3i& begin, const Vec3i& end) const;
+  /// The same, counted from the first of a window of the map; those beyond the window are 0.
+  ValueRange of_box(const BrickWindow& window, const Vec3i& begin, const Vec3i& end) const;
 
  private:
+  ValueRange of_listed(const Vec3i& begin, const Vec3i& end) const;
   void add_brick(std::size_t brick, const Vec3i& begin, const Vec3i& end, ValueRange& range) const;
 
   const BrickMap& map_;

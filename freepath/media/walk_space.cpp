@@ -16,7 +16,13 @@ constexpr int kMostVoxelsApart = 1 << 20;
 
 bool have_one_layout(const Field& a, const Field& b) {
   return a.index_to_world == b.index_to_world && a.voxels.origin() == b.voxels.origin() &&
-         a.voxels.brick_counts() == b.voxels.brick_counts();
+         a.voxels.brick_counts() == b.voxels.brick_counts() && !a.voxels.is_sparse() &&
+         !b.voxels.is_sparse();
+}
+
+double blocks_in(const Vec3i& voxel_counts) {
+  const Vec3d blocks = Vec3d(voxel_counts) / BoxTree::kBlock;
+  return blocks.x * blocks.y * blocks.z;
 }
 
 double voxel_volume(const Field& field) { return std::abs(field.index_to_world.determinant()); }
@@ -74,32 +80,36 @@ void check_inverse(const Field& field) {
   }
 }
 
-/// Fails if the grid over all fields is longer than places can be told apart, in voxels of its own
-/// or of a component.
+/// Fails if the grid over all fields, or a part of it, is longer than places can be told apart, in
+/// voxels of its own or of a component.
 void check_extent(const Box3d& bounds, const WalkSpace& space, std::span<const Field* const> fields,
-                  const Field& finest) {
+                  const Field& finest, int most) {
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const Matrix4d map = index_to_index(space.index_to_world, fields[k]->index_to_world);
     const Vec3d size = transformed(bounds, map).size();
     const Vec3d own = bounds.size();
     const double longest = std::max({size.x, size.y, size.z, own.x, own.y, own.z});
-    if (longest <= kMostVoxelsApart) continue;
+    if (longest <= most) continue;
     const Field& other = fields[k] == &finest ? *fields[k == 0 ? 1 : 0] : *fields[k];
     fail(
         "grids '{}' and '{}' lie too far apart, or differ too much in the size of their voxels: "
         "the "
         "box around both is {:.3g} voxels long, more than {}; move them together, or resample the "
         "finer one",
-        finest.name, other.name, longest, kMostVoxelsApart);
+        finest.name, other.name, longest, most);
   }
+}
+
+const Field& finest_of(std::span<const Field* const> fields) {
+  return **std::min_element(fields.begin(), fields.end(), [](const Field* a, const Field* b) {
+    return voxel_volume(*a) < voxel_volume(*b);
+  });
 }
 
 /// The grid over fields that differ in transform or layout.
 WalkSpace common_space(std::span<const Field* const> fields) {
   for (const Field* field : fields) check_inverse(*field);
-  const Field& finest = **std::min_element(
-      fields.begin(), fields.end(),
-      [](const Field* a, const Field* b) { return voxel_volume(*a) < voxel_volume(*b); });
+  const Field& finest = finest_of(fields);
   WalkSpace space;
   space.aligned = false;
   space.index_to_world = finest.index_to_world;
@@ -108,7 +118,7 @@ WalkSpace common_space(std::span<const Field* const> fields) {
     bounds.extendBy(transformed(active_box(*field, 1),
                                 index_to_index(field->index_to_world, space.index_to_world)));
   }
-  check_extent(bounds, space, fields, finest);
+  check_extent(bounds, space, fields, finest, kMostVoxels);
   constexpr double kRounding = 1e-3;  // of bounds that are whole voxels; one is to spare
   for (int axis = 0; axis < 3; ++axis) {
     space.origin[axis] = static_cast<int>(std::floor(bounds.min[axis] + kRounding)) - 1;
@@ -123,6 +133,36 @@ WalkSpace common_space(std::span<const Field* const> fields) {
   return space;
 }
 
+/// The grid of fields that share a transform, over the bricks of all.
+WalkSpace shared_space(std::span<const Field* const> fields) {
+  WalkSpace space;
+  space.index_to_world = fields[0]->index_to_world;
+  space.in_parts = true;
+  space.origin = fields[0]->voxels.origin();
+  Vec3d end(space.origin);
+  for (const Field* field : fields) {
+    const BrickMap& map = field->voxels;
+    const Vec3d last = Vec3d(map.origin()) + Vec3d(map.brick_counts()) * BrickMap::kBrickSize;
+    for (int axis = 0; axis < 3; ++axis) {
+      space.origin[axis] = std::min(space.origin[axis], map.origin()[axis]);
+      end[axis] = std::max(end[axis], last[axis]);
+    }
+  }
+  const Vec3d size = end - Vec3d(space.origin);
+  const double longest = std::max({size.x, size.y, size.z});
+  if (longest > kMostVoxels) {
+    fail(
+        "grids '{}' and '{}' lie too far apart: the box around both is {:.3g} voxels long, more "
+        "than {}; move them together",
+        fields[0]->name, fields[1]->name, longest, kMostVoxels);
+  }
+  space.voxel_counts = Vec3i(size);
+  for (const Field* field : fields) {
+    space.to_component.push_back(translation(Vec3d(space.origin - field->voxels.origin())));
+  }
+  return space;
+}
+
 }  // namespace
 
 Box3d WalkSpace::bounds(std::span<const Field* const> fields, double reach) const {
@@ -130,9 +170,41 @@ Box3d WalkSpace::bounds(std::span<const Field* const> fields, double reach) cons
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const Vec3i& first = fields[k]->voxels.origin();
     const Box3d places = transformed(active_box(*fields[k], reach), to_place(first));
-    box.extendBy(aligned ? places : transformed(places, to_component[k].inverse()));
+    box.extendBy(to_component[k] == Matrix4d() ? places
+                                               : transformed(places, to_component[k].inverse()));
   }
   return box;
+}
+
+std::vector<PlaceBox> WalkSpace::occupied(std::span<const Field* const> fields) const {
+  constexpr double kRounding = 1e-3;  // of maps that are whole voxels
+  std::vector<PlaceBox> boxes;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const BrickMap& map = fields[k]->voxels;
+    const Box3d active = transformed(active_box(*fields[k], 1.5), to_place(map.origin()));
+    const Matrix4d from_component = to_component[k].inverse();
+    map.for_each_brick([&](const PlacedBrick& placed) {
+      const Vec3d first(placed.place * BrickMap::kBrickSize - map.origin());
+      Box3d places(first - Vec3d(1), first + Vec3d(BrickMap::kBrickSize + 1));
+      PlaceBox box;
+      for (int axis = 0; axis < 3; ++axis) {
+        places.min[axis] = std::max(places.min[axis], active.min[axis]);
+        places.max[axis] = std::min(places.max[axis], active.max[axis]);
+        if (!(places.min[axis] < places.max[axis])) return;
+      }
+      if (!aligned)
+        places = transformed(places, from_component);
+      else
+        places = {places.min + from_component.translation(),
+                  places.max + from_component.translation()};
+      for (int axis = 0; axis < 3; ++axis) {
+        box.begin[axis] = static_cast<int>(std::floor(places.min[axis] + kRounding));
+        box.end[axis] = static_cast<int>(std::ceil(places.max[axis] - kRounding));
+      }
+      boxes.push_back(box);
+    });
+  }
+  return boxes;
 }
 
 void share_layout(std::span<Field* const> fields) {
@@ -141,6 +213,7 @@ void share_layout(std::span<Field* const> fields) {
   double entries = 0;
   for (const Field* field : fields) {
     if (field->function || field->index_to_world != fields[0]->index_to_world) return;
+    if (field->voxels.is_sparse()) return;
     const BrickMap& map = field->voxels;
     entries += static_cast<double>(map.index().size());
     for (int axis = 0; axis < 3; ++axis) {
@@ -158,16 +231,37 @@ void share_layout(std::span<Field* const> fields) {
 WalkSpace make_walk_space(std::span<const Field* const> fields) {
   check_lengths(fields);
   const Field& first = *fields[0];
-  if (!std::all_of(fields.begin(), fields.end(),
-                   [&](const Field* field) { return have_one_layout(*field, first); })) {
-    return common_space(fields);
-  }
   WalkSpace space;
-  space.index_to_world = first.index_to_world;
-  space.origin = first.voxels.origin();
-  space.voxel_counts = first.voxels.brick_counts() * BrickMap::kBrickSize;
-  space.to_component.assign(fields.size(), Matrix4d());
+  if (std::all_of(fields.begin(), fields.end(),
+                  [&](const Field* field) { return have_one_layout(*field, first); })) {
+    space.index_to_world = first.index_to_world;
+    space.origin = first.voxels.origin();
+    space.voxel_counts = first.voxels.brick_counts() * BrickMap::kBrickSize;
+    space.to_component.assign(fields.size(), Matrix4d());
+    return space;
+  }
+  const bool any_sparse = std::any_of(fields.begin(), fields.end(),
+                                      [](const Field* field) { return field->voxels.is_sparse(); });
+  const bool one_transform = std::all_of(fields.begin(), fields.end(), [&](const Field* field) {
+    return field->index_to_world == first.index_to_world;
+  });
+  if (any_sparse && one_transform) return shared_space(fields);
+  space = common_space(fields);
+  space.in_parts = any_sparse;
+  if (!any_sparse && !is_worth_an_index(blocks_in(space.voxel_counts), 0)) {
+    const std::vector<PlaceBox> boxes = space.occupied(fields);
+    space.in_parts =
+        !is_worth_an_index(blocks_in(space.voxel_counts), BoxTree::filled_blocks(boxes));
+    if (space.in_parts && one_transform) return shared_space(fields);
+  }
+  if (!space.in_parts) check_part(space, {Vec3i(0), space.voxel_counts}, fields);
   return space;
+}
+
+void check_part(const WalkSpace& space, const PlaceBox& box, std::span<const Field* const> fields) {
+  if (space.aligned) return;
+  check_extent({Vec3d(box.begin), Vec3d(box.end)}, space, fields, finest_of(fields),
+               kMostVoxelsApart);
 }
 
 }  // namespace freepath

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -61,9 +62,8 @@ void add_components(Volume volume, std::vector<Component>& components) {
 /// all that their convex hull needs [world].
 void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
   const BrickMap& map = field.voxels;
-  const Vec3i& counts = map.brick_counts();
-  const auto add_brick = [&](int x, int y, int z) {
-    const Vec3i first = map.origin() + Vec3i(x, y, z) * BrickMap::kBrickSize;
+  const auto add_brick = [&](const Vec3i& place) {
+    const Vec3i first = place * BrickMap::kBrickSize;
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d point;
       for (int axis = 0; axis < 3; ++axis) {
@@ -75,17 +75,16 @@ void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
       corners.push_back(point * field.index_to_world);
     }
   };
-  for (int x = 0; x < counts.x; ++x) {
-    for (int y = 0; y < counts.y; ++y) {
-      const auto row = map.index().subspan((std::size_t(x) * counts.y + y) * counts.z, counts.z);
-      const auto holds = [](uint32_t brick) { return brick != 0; };
-      const auto first = std::find_if(row.begin(), row.end(), holds);
-      if (first == row.end()) continue;
-      const auto last = std::find_if(row.rbegin(), row.rend(), holds);
-      add_brick(x, y, static_cast<int>(first - row.begin()));
-      add_brick(x, y, static_cast<int>(row.rend() - last) - 1);
+  std::optional<Vec3i> last;  // of the row so far
+  map.for_each_brick([&](const PlacedBrick& placed) {
+    const Vec3i& place = placed.place;
+    if (!last || last->x != place.x || last->y != place.y) {
+      if (last) add_brick(*last);
+      add_brick(place);
     }
-  }
+    last = place;
+  });
+  if (last) add_brick(*last);
 }
 
 /// Straight up or down no horizon tells what is up in the picture; then north is.
@@ -100,10 +99,24 @@ Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
 /// collision from the next, and a walk would not get on.
 constexpr double kLargestOpticalDepth = 4e6;
 
-void check_optical_depth(const Medium& medium) {
+/// Length across a part of a medium [world].
+double length_of(const Medium& medium, const WalkPart& part) {
+  const Matrix4d to_world = medium.world_to_place().inverse();
+  Box3d box;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d place;
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = (corner >> axis & 1) != 0 ? part.box.end[axis] : part.box.begin[axis];
+    }
+    box.extendBy(place * to_world);
+  }
+  return std::min(box.size().length(), medium.world_bounds().size().length());
+}
+
+void check_optical_depth(const Medium& medium, const WalkPart& medium_part) {
   const std::vector<Component>& components = medium.components();
-  const std::vector<float>& maxima = medium.super_voxels().maxima;
-  const double length = medium.world_bounds().size().length();
+  const std::vector<float>& maxima = medium_part.cells.maxima;
+  const double length = length_of(medium, medium_part);
   double depth = 0;
   double deepest = -1;
   float densest = 0;
@@ -144,7 +157,7 @@ Medium make_medium(std::vector<Volume> volumes, int super_voxel) {
          components.size(), Medium::kMaxComponents);
   }
   Medium medium(std::move(components), super_voxel);
-  check_optical_depth(medium);
+  for (const WalkPart& part : medium.parts()) check_optical_depth(medium, part);
   return medium;
 }
 

@@ -16,7 +16,6 @@ constexpr std::size_t kManyComponents = 3;
 
 /// Share of the tentative collisions that the minima decide, were the rays spread evenly.
 double control_share(const Medium& medium, const MediumChannels& channels) {
-  const SuperVoxels& cells = medium.super_voxels();
   const std::size_t components = medium.components().size();
   double control = 0;
   double rate = 0;
@@ -26,9 +25,13 @@ double control_share(const Medium& medium, const MediumChannels& channels) {
     for (int channel = 0; channel < channels.count; ++channel) {
       sigma_t = std::max(sigma_t, values.sigma_a[channel] + values.sigma_s[channel]);
     }
-    for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
-      control += double{sigma_t} * cells.minima[cell * components + k];
-      rate += double{sigma_t} * cells.maxima[cell * components + k];
+    for (const WalkPart& part : medium.parts()) {
+      const SuperVoxels& cells = part.cells;
+      const double volume = double(cells.cell_size) * cells.cell_size * cells.cell_size;
+      for (std::size_t cell = 0; cell < cells.cell_count(); ++cell) {
+        control += volume * sigma_t * cells.minima[cell * components + k];
+        rate += volume * sigma_t * cells.maxima[cell * components + k];
+      }
     }
   }
   return rate > 0 ? control / rate : 0;

@@ -106,11 +106,13 @@ void check_constant(const Medium& medium, int k, const Vec3i& low, const Vec3i& 
 
 /// Fails unless the bounds of component k, which are read in place of its voxels, are tight.
 void check_tight(const Medium& medium, int k, float density) {
-  const SuperVoxels& cells = medium.super_voxels();
-  for (std::size_t i = k; i < cells.maxima.size(); i += cells.components) {
-    if (cells.maxima[i] == 0 || cells.maxima[i] == density) continue;
-    fail("'closed-form' takes the density from its bounds, but grid '{}' is {} and its bound {}",
-         medium.components()[k].density->name, density, cells.maxima[i]);
+  for (const WalkPart& part : medium.parts()) {
+    const SuperVoxels& cells = part.cells;
+    for (std::size_t i = k; i < cells.maxima.size(); i += cells.components) {
+      if (cells.maxima[i] == 0 || cells.maxima[i] == density) continue;
+      fail("'closed-form' takes the density from its bounds, but grid '{}' is {} and its bound {}",
+           medium.components()[k].density->name, density, cells.maxima[i]);
+    }
   }
 }
 
@@ -121,6 +123,12 @@ void check_closed_form(const Medium& medium, Interpolation interpolation) {
     fail(
         "'closed-form' needs a homogeneous medium: grid '{}' and another differ in transform or "
         "bounds; take 'regular', or a null-collision method",
+        medium.components()[0].density->name);
+  }
+  if (!medium.part_tree().leaves().empty()) {
+    fail(
+        "'closed-form' needs a homogeneous medium: the voxels of grid '{}' lie far apart; take "
+        "'regular', or a null-collision method",
         medium.components()[0].density->name);
   }
   Vec3i low = medium.components()[0].density->voxels.active_min();

@@ -98,6 +98,9 @@ Walker::Walker(const Medium& medium, const MediumChannels& channels, const WalkS
   check_channels(medium, channels);
   if (channels_ > 1 && !shares_paths(channels, settings)) fail_to_share_paths(settings);
   view_ = view_of(medium, settings.interpolation, channels, settings.origin);
+  if (!medium.part_tree().leaves().empty()) {
+    parts_ = std::make_shared<const PartWalks>(medium, channels, settings.origin);
+  }
   const KernelTable& table = kernels(settings.simd);
   tracker_.method = parse_method(settings.tracker, tracker_infos());
   transmittance_.method = parse_method(settings.transmittance, transmittance_infos());
@@ -112,17 +115,24 @@ Walker::Walker(const Medium& medium, const MediumChannels& channels, const WalkS
         "place to place: take a null-collision tracker",
         settings.tracker);
   }
+  tracker_.channels = channels_;
   tracker_.function = tracker.walks[compiled_channels(tracker.walks, channels_)];
   // One extinction for all channels makes one transmittance.
-  transmittance_channels_ = channels.has_grey_extinction() ? 1 : channels_;
+  transmittance_.weights = PartWeights::kMultiplied;
+  transmittance_.channels = channels.has_grey_extinction() ? 1 : channels_;
   transmittance_.function =
-      transmittance.walks[compiled_channels(transmittance.walks, transmittance_channels_)];
+      transmittance.walks[compiled_channels(transmittance.walks, transmittance_.channels)];
   modes_ = {settings.absorption, settings.emission, channels.emits()};
 }
 
 void Walker::walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,
                   FlightStream& flights, WalkStatistics& statistics) const {
   flights.resize(rays.size());
+  if (parts_) {
+    parts_->walk(bound.function, bound.weights, view_, bound.method.options, modes, seed_,
+                 bound.channels, rays, flights, statistics);
+    return;
+  }
   bound.function(view_, bound.method.options, modes, seed_, rays, flights, statistics);
 }
 

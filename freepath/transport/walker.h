@@ -1,12 +1,14 @@
 #pragma once
 /// @file The facade of the walk: what programs, Python and embedders call.
 
+#include <memory>
 #include <span>
 #include <string>
 
 #include "freepath/media/medium.h"
 #include "freepath/media/medium_channels.h"
 #include "freepath/transport/kernels.h"
+#include "freepath/transport/part_walks.h"
 
 namespace freepath {
 
@@ -64,23 +66,25 @@ class Walker {
   /// Channels in the weights of a flight: 1, where one stands for all, or those of the medium.
   int channels() const { return channels_; }
   /// Channels in the weights of a transmittance: 1 where one extinction serves all.
-  int transmittance_channels() const { return transmittance_channels_; }
+  int transmittance_channels() const { return transmittance_.channels; }
 
  private:
   struct Bound {
     WalkFunction function = nullptr;
     Method method;
+    int channels = 1;
+    PartWeights weights = PartWeights::kHandedOn;
   };
   void walk(const Bound& bound, const WalkModes& modes, const RayStream& rays,
             FlightStream& flights, WalkStatistics& statistics) const;
 
   MediumView view_;
+  std::shared_ptr<const PartWalks> parts_;  // null where the medium is one part
   Bound tracker_;
   Bound transmittance_;
   WalkModes modes_;
   uint64_t seed_;
   int channels_;
-  int transmittance_channels_ = 1;
 };
 
 }  // namespace freepath

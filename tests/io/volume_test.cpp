@@ -207,6 +207,30 @@ TEST(VolumeLoad, BoundsThatAreTooLargeAreRefusedBeforeTheyCostAnything) {
   }
 }
 
+// A stray voxel, or a cloud at the other end of the sky: what is loaded is what there is.
+TEST(VolumeLoad, MemoryFollowsTheVoxelsAndNotTheirBox) {
+  const TemporaryFolder folder;
+  const auto bytes_at = [&](const Vec3i& stray, const char* name) {
+    TestGrid grid;
+    grid.tiles = {{Vec3i(0), 8, 0.5}, {Vec3i(64, 0, 8), 8, 0.25}};
+    grid.voxels = {{Vec3i(-3, 20, 7), 2.0}, {stray, 1.0}};
+    if (std::string(name) == "a.vdb") {
+      write_vdb_file(folder / name, {grid});
+    } else {
+      write_nvdb_file(folder / name, {grid});
+    }
+    const LoadedField loaded = load_field(folder / name);
+    expect_same(grid, loaded, 1e-7);
+    return loaded.field.voxels.memory_bytes();
+  };
+  for (const char* name : {"a.vdb", "a.nvdb"}) {
+    const std::size_t near = bytes_at(Vec3i(6000), name);
+    EXPECT_LT(near, 16'384U);
+    EXPECT_EQ(bytes_at(Vec3i(1 << 18, -(1 << 19), 24000), name), near);
+    EXPECT_EQ(bytes_at(Vec3i(1 << 22), name), near);
+  }
+}
+
 struct Real {
   const char* file;
   std::size_t index;

@@ -363,8 +363,10 @@ class MediumReader {
     component.density = density;
     component.sigma_s = Spectrum(static_cast<float>(largest_ * values.scale));
     Medium medium({component});
-    const std::vector<float>& maxima = medium.super_voxels().maxima;
-    const float densest = maxima.empty() ? 0 : *std::max_element(maxima.begin(), maxima.end());
+    float densest = 0;
+    for (const WalkPart& part : medium.parts()) {
+      for (const float maximum : part.cells.maxima) densest = std::max(densest, maximum);
+    }
     if (!std::isfinite(densest * component.sigma_s[0])) {
       fail("the extinction, a density of {} times {}, is too large for a float", densest,
            largest_ * values.scale);
