@@ -8,7 +8,7 @@
 namespace freepath {
 namespace {
 
-/// The seed of a part; the first has that of the walk. [Steele14], the finalizer of SplitMix64.
+/// The seed of a part; the first has that of the walk, others one mixed as SplitMix64 does.
 uint64_t seed_of_part(uint64_t seed, uint32_t part) {
   if (part == 0) return seed;
   uint64_t mixed = seed + part * 0x9E3779B97F4A7C15U;
