@@ -1,10 +1,12 @@
 #include "freepath/render/surfaces/ply_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +14,7 @@
 #include <string>
 
 #include "freepath/base/error.h"
+#include "tests/gzip.h"
 
 namespace freepath::testing {
 
@@ -33,9 +36,8 @@ const char* const kHeader =
 /// Writes numbers in any of the formats.
 class Writer {
  public:
-  explicit Writer(const std::string& format) : format_(format) {
-    text_ = "ply\nformat " + format + " 1.0\n" + kHeader;
-  }
+  explicit Writer(const std::string& format, const std::string& header = kHeader)
+      : format_(format), text_("ply\nformat " + format + " 1.0\n" + header) {}
   template <class T>
   void add(T value) {
     if (format_ == "ascii") {
@@ -121,6 +123,47 @@ TEST_P(PlyFile, IsReadFromAFile) {
   std::filesystem::remove(path);
 }
 
+// As exporters of large scenes write them, "mesh.ply.gz"; one member or several.
+TEST_P(PlyFile, IsReadPackedByGzip) {
+  const std::string whole = sample_file(GetParam());
+  expect_sample(parse_ply(gzip(whole), "a.ply.gz"));
+  expect_sample(parse_ply(gzip(whole.substr(0, 300)) + gzip(whole.substr(300)), "a.ply"));
+  const std::string packed = gzip(whole);
+  for (std::size_t size = 2; size < packed.size(); ++size) {
+    EXPECT_THROW(parse_ply(packed.substr(0, size), "a.ply.gz"), Error) << size << " bytes";
+  }
+}
+
+/// A grid of so many vertices at each edge, which takes many blocks of unpacking.
+std::string grid_file(const std::string& format, int edge) {
+  Writer writer(format, fmt::format("element vertex {}\nproperty float x\nproperty float y\n"
+                                    "property float z\nelement face {}\n"
+                                    "property list uchar int vertex_indices\nend_header\n",
+                                    edge * edge, (edge - 1) * (edge - 1)));
+  for (int i = 0; i < edge * edge; ++i) {
+    writer.add(0.1F * static_cast<float>(i % edge));
+    writer.add(0.1F * static_cast<float>(i / edge));
+    writer.add(std::sin(0.37F * static_cast<float>(i)));
+  }
+  for (int row = 0; row + 1 < edge; ++row) {
+    for (int column = 0; column + 1 < edge; ++column) {
+      const int first = row * edge + column;
+      writer.add(uint8_t{4});
+      for (const int index : {first, first + 1, first + edge + 1, first + edge}) writer.add(index);
+    }
+  }
+  return writer.text();
+}
+
+TEST_P(PlyFile, PackedIsTheSameAsUnpacked) {
+  const std::string whole = grid_file(GetParam(), 120);
+  EXPECT_GT(whole.size(), 300000U);
+  const PlyMesh expected = parse_ply(whole, "a.ply");
+  const PlyMesh found = parse_ply(gzip(whole), "a.ply.gz");
+  EXPECT_EQ(found.positions, expected.positions);
+  EXPECT_EQ(found.quads, expected.quads);
+}
+
 TEST_P(PlyFile, ThatIsCutOffIsRefusedAnywhere) {
   const std::string whole = sample_file(GetParam());
   // The last word of a text may lose digits, and nobody sees it.
@@ -166,6 +209,26 @@ TEST(PlyFile, ErrorsSayWhatAndWhere) {
                 .find("more than the file holds"),
             std::string::npos);
   EXPECT_THROW(read_ply("/nowhere/a.ply"), Error);
+}
+
+TEST(PlyErrors, PackedFilesCostNoMoreThanTheyDeclare) {
+  const std::string header =
+      "property float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string begin = "ply\nformat ascii 1.0\nelement vertex ";
+  const std::string mesh = begin + "3\n" + header + "0 0 0  1 0 0  0 1 0  3 0 1 2\n";
+  // What comes after the mesh is not unpacked: a fault in it is not noticed.
+  std::string more = gzip(mesh + std::string(std::size_t{4} << 20, ' ') + "end");
+  more[more.size() - 4] = static_cast<char>(more[more.size() - 4] + 1);
+  more.resize(more.size() - 100);
+  EXPECT_EQ(parse_ply(more, "a.ply.gz").triangles, (std::vector<int>{0, 1, 2}));
+  // A count that no file of that size can hold, however well it is packed.
+  const std::string many = gzip(begin + "1000000\n" + header + "0 0 0");
+  EXPECT_LT(many.size(), 900U);
+  EXPECT_NE(message_of(many).find("more than the file holds"), std::string::npos);
+  EXPECT_NE(message_of(gzip("ply\n" + std::string(std::size_t{2} << 20, '\n')))
+                .find("there is no 'end_header'"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,32 +1,18 @@
 // Scenes of several files, packed files, and the scenes that renderers are compared on.
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
+#include "tests/gzip.h"
 #include "tests/scene/scenes_in_memory.h"
 
 namespace freepath::testing {
 namespace {
-
-std::string gzip(const std::string& text) {
-  z_stream stream{};
-  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
-  std::string packed(deflateBound(&stream, text.size()), '\0');
-  std::string source = text;
-  stream.next_in = reinterpret_cast<Bytef*>(source.data());
-  stream.avail_in = static_cast<uInt>(source.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
-}
 
 TEST(SceneFiles, IncludeTakesPartInTheState) {
   const PbrtScene scene = parse(
@@ -37,6 +23,75 @@ TEST(SceneFiles, IncludeTakesPartInTheState) {
   EXPECT_EQ(to_string(scene.camera->location), "view.pbrt:1:17");
   EXPECT_EQ(scene.shapes.at(0).world_from_object.start, translation(Vec3d(1, 0, 0)));
   EXPECT_EQ(scene.shapes.at(1).world_from_object.start, Matrix4d());
+}
+
+/// What an included file holds is text in the place of its Include: a statement that begins there
+/// goes on after it, whatever it is cut into.
+TEST(SceneFiles, IncludeIsTextual) {
+  const auto medium = [](const PbrtScene& scene) {
+    const ParameterList& list = scene.media.at(0).parameters;
+    EXPECT_EQ(list.get_integer("nx", 0), 2);
+    EXPECT_EQ(
+        std::vector<double>(list.get_floats("density").begin(), list.get_floats("density").end()),
+        (std::vector<double>{1, 2, 3, 4}));
+    EXPECT_EQ(list.get_float("scale", 0), 3);
+    EXPECT_EQ(scene.shapes.at(0).world_from_object.start, translation(Vec3d(1, 2, 3)));
+    EXPECT_EQ(scene.shapes.at(0).type, "sphere");
+    EXPECT_EQ(scene.shapes.at(0).parameters.get_float("radius", 0), 2);
+  };
+  const std::string whole =
+      R"(WorldBegin MakeNamedMedium "puff" "string type" "uniformgrid" "integer nx" 2 )"
+      R"("float density" [ 1 2 3 4 ] "float scale" 3 Translate 1 2 3 Shape "sphere" )"
+      R"("float radius" 2)";
+  medium(parse(whole));
+  // Cut before every word, and the rest goes on after the Include. Names of files are strings, so
+  // that one may not be cut where a parameter list could take the Include's.
+  int cuts = 0;
+  for (std::size_t cut = whole.find(' '); cut != std::string::npos;
+       cut = whole.find(' ', cut + 1)) {
+    if (std::count(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(cut), '"') % 2 != 0) {
+      continue;  // within a string
+    }
+    SCOPED_TRACE(whole.substr(cut));
+    medium(parse("Include \"first.pbrt\"" + whole.substr(cut),
+                 {{"first.pbrt", whole.substr(0, cut)}}));
+    // The same through files within files, each of which ends where the next one goes on.
+    medium(parse("Include \"outer.pbrt\"" + whole.substr(cut),
+                 {{"outer.pbrt", "Include \"first.pbrt\""}, {"first.pbrt", whole.substr(0, cut)}}));
+    ++cuts;
+  }
+  EXPECT_GT(cuts, 20);
+}
+
+TEST(SceneFiles, ErrorsOfAStatementInTwoFilesNameTheFileOfTheWord) {
+  const std::map<std::string, std::string> files = {
+      {"a.pbrt", "\nShape \"sphere\"\n \"float radius\" [ 1"},
+      {"b.pbrt", "\nTranslate 1 2"},
+      {"c.pbrt", "Shape \"sphere\" \"float radius\" 1"}};
+  EXPECT_EQ(error_of("WorldBegin Include \"a.pbrt\"\n x ]", files),
+            "scene.pbrt:2:2: parameter 'radius' of type float expects a number, found 'x'");
+  EXPECT_EQ(error_of("WorldBegin Include \"a.pbrt\"\n", files),
+            "a.pbrt:3:17: this bracket is never closed");
+  EXPECT_EQ(error_of("WorldBegin Include \"b.pbrt\"\nShape \"disk\"", files),
+            "scene.pbrt:2:1: expected number 3 of the 3 of Translate, found 'Shape'");
+  EXPECT_EQ(error_of("WorldBegin Include \"c.pbrt\"\n\"float radius\" 2", files),
+            "scene.pbrt:2:1: parameter 'radius' is given twice, first in line 1");
+}
+
+// pbrt parses an imported file by itself.
+TEST(SceneFiles, StatementsDoNotGoOnAfterAnImport) {
+  const std::map<std::string, std::string> files = {
+      {"a.pbrt", R"(Shape "sphere")"},
+      {"b.pbrt", R"(Include "a.pbrt" "float radius" 2)"},
+      {"c.pbrt", R"(Shape "sphere" "float radius")"}};
+  EXPECT_EQ(error_of(R"(WorldBegin Import "a.pbrt" "float radius" 1)", files),
+            "scene.pbrt:1:28: expected a directive, found string 'float radius'");
+  EXPECT_EQ(
+      parse(R"(WorldBegin Import "b.pbrt")", files).shapes.at(0).parameters.get_float("radius", 0),
+      2);
+  EXPECT_EQ(error_of(R"(WorldBegin Import "c.pbrt" 1)", files),
+            "c.pbrt:1:30: parameter 'radius' of type float expects a number, found the end of the "
+            "file");
 }
 
 TEST(SceneFiles, ImportLeavesTheStateAlone) {

@@ -10,6 +10,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/input_file.h"
+#include "freepath/render/surfaces/ply_bytes.h"
 #include "freepath/render/surfaces/ply_header.h"
 
 namespace freepath {
@@ -19,8 +20,8 @@ namespace {
 /// Takes numbers from the data, one after the other.
 class Numbers {
  public:
-  Numbers(std::string_view content, const PlyHeader& header, const std::string& name)
-      : rest_(content.substr(header.size)), format_(header.format), name_(name) {}
+  Numbers(PlyBytes& bytes, PlyFormat format, const std::string& name)
+      : bytes_(bytes), format_(format), name_(name) {}
 
   /// @param element, number what is being read, for a message
   double next(PlyType type, const PlyElement& element, uint64_t number) {
@@ -30,29 +31,40 @@ class Numbers {
 
  private:
   double next_word(const PlyElement& element, uint64_t number) {
-    const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
-    if (begin == std::string_view::npos) cut_off(element, number);
-    rest_.remove_prefix(begin);
-    if (rest_.front() == '+') rest_.remove_prefix(1);
+    std::string_view rest = skip_blanks();
+    if (rest.empty()) cut_off(element, number);
+    if (rest.front() == '+') rest.remove_prefix(1);
     double value = 0;
-    const auto [stop, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    const auto length = static_cast<std::size_t>(stop - rest_.data());
-    const bool ends = length == rest_.size() || std::strchr(" \t\r\n", rest_[length]) != nullptr;
+    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    const auto length = static_cast<std::size_t>(stop - rest.data());
+    const bool ends = length == rest.size() || std::strchr(" \t\r\n", rest[length]) != nullptr;
     if (error != std::errc() || !ends) {
-      const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
+      const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n"));
       fail("{}: '{}' in {} {} is no number; write the file anew", name_, word, element.name,
            number);
     }
-    rest_.remove_prefix(length);
+    bytes_.skip(static_cast<std::size_t>(stop - bytes_.ahead(0).data()));
     return value;
+  }
+
+  /// What comes next but blanks, with the whole of a number; nothing at the end.
+  std::string_view skip_blanks() {
+    constexpr std::size_t kLongestNumber = 4096;
+    for (;;) {
+      const std::string_view rest = bytes_.ahead(kLongestNumber);
+      const std::size_t begin = std::min(rest.find_first_not_of(" \t\r\n"), rest.size());
+      if (begin == 0) return rest;
+      bytes_.skip(begin);
+    }
   }
 
   double next_bytes(PlyType type, const PlyElement& element, uint64_t number) {
     const std::size_t size = size_of(type);
-    if (rest_.size() < size) cut_off(element, number);
+    const std::string_view rest = bytes_.ahead(size);
+    if (rest.size() < size) cut_off(element, number);
     std::array<char, 8> bytes{};
-    std::copy_n(rest_.data(), size, bytes.data());
-    rest_.remove_prefix(size);
+    std::copy_n(rest.data(), size, bytes.data());
+    bytes_.skip(size);
     const bool is_native =
         (format_ == PlyFormat::kLittleEndian) == (std::endian::native == std::endian::little);
     if (!is_native) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
@@ -89,7 +101,7 @@ class Numbers {
          element.name, number, element.count);
   }
 
-  std::string_view rest_;
+  PlyBytes& bytes_;
   PlyFormat format_;
   const std::string& name_;
 };
@@ -108,16 +120,18 @@ class DataParser {
  public:
   DataParser(std::string_view content, const std::string& name)
       : name_(name),
-        header_(parse_ply_header(content, name)),
-        numbers_(content, header_, name),
-        bytes_(content.size()) {}
+        bytes_(content, name),
+        header_(parse_ply_header(bytes_.ahead(kLongestHeader), name)),
+        numbers_(bytes_, header_.format, name) {
+    bytes_.skip(header_.size);
+  }
 
   PlyMesh parse() {
     bool has_vertices = false;
     bool has_faces = false;
     for (const PlyElement& element : header_.elements) {
       // Each takes a byte at least; a count beyond would only ask for memory.
-      if (!element.properties.empty() && element.count > bytes_) {
+      if (!element.properties.empty() && element.count > bytes_.largest_size()) {
         fail("{}: {} of '{}' are more than the file holds; it was cut off, fetch or write it anew",
              name_, element.count, element.name);
       }
@@ -131,6 +145,7 @@ class DataParser {
         skip(element);
       }
     }
+    bytes_.check_end();
     if (!has_vertices || !has_faces || mesh_.positions.empty() ||
         (mesh_.triangles.empty() && mesh_.quads.empty())) {
       fail("{}: there are no vertices or no faces; a mesh needs both", name_);
@@ -238,10 +253,13 @@ class DataParser {
     }
   }
 
+  /// Of a packed file.
+  static constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
   const std::string& name_;
+  PlyBytes bytes_;
   PlyHeader header_;
   Numbers numbers_;
-  std::size_t bytes_;
   PlyMesh mesh_;
 };
 

@@ -23,9 +23,10 @@ struct PlyMesh {
   std::vector<ShapeGeometry> shapes() const;
 };
 
-/// Reads ASCII and both binary formats: x, y, z of the vertices, nx, ny, nz and u, v (or s, t,
-/// texture_u, texture_v, texture_s, texture_t) where they are, and the lists vertex_indices or
-/// vertex_index of the faces, with numbers of any type. All else is skipped.
+/// Reads ASCII and both binary formats, packed by gzip or not, whatever the name: x, y, z of the
+/// vertices, nx, ny, nz and u, v (or s, t, texture_u, texture_v, texture_s, texture_t) where they
+/// are, and the lists vertex_indices or vertex_index of the faces, with numbers of any type. All
+/// else is skipped.
 /// @throws Error with the file, the place and what to do
 PlyMesh read_ply(const std::string& file);
 

@@ -48,7 +48,9 @@ class HeaderParser {
   PlyHeader parse() {
     if (!content_.starts_with("ply") || next_line() != "ply") {
       fail(
-          "{}: this is no PLY file: it does not begin with 'ply'. Is it compressed? Then unpack it",
+          "{}: this is no PLY file: it does not begin with 'ply'. Is it compressed, and not by "
+          "gzip? "
+          "Then unpack it",
           name_);
     }
     bool has_format = false;

@@ -1,6 +1,5 @@
 // Include and Import, and the files that parameters name.
 
-#include <algorithm>
 #include <utility>
 
 #include "freepath/scene/pbrt/scene_parser.h"
@@ -22,24 +21,21 @@ std::string SceneParser::read_named_file(const std::filesystem::path& path,
   return check_text(std::move(bytes), path.string());
 }
 
-void SceneParser::parse_file(const Token& name, const SourceLocation& location) {
+void SceneParser::open_file(const Token& name, const SourceLocation& location) {
   const std::filesystem::path path =
-      locate_file(reader_, name.text, lexer_->file(), files_.front());
-  if (std::ranges::find(files_, path) != files_.end()) {
+      locate_file(reader_, name.text, tokens_.file_of(name), tokens_.main_file());
+  if (tokens_.is_open(path)) {
     fail_at(location, "{} includes itself", in_quotes(path.string()));
   }
-  if (static_cast<int>(files_.size()) >= limits_.include_depth) {
+  if (static_cast<int>(tokens_.depth()) >= limits_.include_depth) {
     fail_at(location, "files include one another more than {} deep", limits_.include_depth);
   }
-  Lexer lexer(path.string(), read_named_file(path, location));
-  files_.push_back(path);
-  parse_directives(lexer);
-  files_.pop_back();
+  tokens_.open(path, read_named_file(path, location));
 }
 
 void SceneParser::include_file(const SourceLocation& location) {
   const Token name = expect_string("the name of a file");
-  parse_file(name, location);
+  open_file(name, location);
 }
 
 // An imported file begins with a copy of the state, and leaves none of its own behind.
@@ -48,11 +44,14 @@ void SceneParser::import_file(const SourceLocation& location) {
   const GraphicsState state = state_;
   const auto coordinate_systems = coordinate_systems_;
   const std::size_t outside = std::exchange(scopes_outside_import_, scopes_.size());
-  parse_file(name, location);
+  const std::size_t outside_files = tokens_.begin_part();
+  open_file(name, location);
+  parse_directives();
   if (scopes_.size() > scopes_outside_import_) {
     const OpenScope& open = scopes_.back();
     fail_at(open.location, "this {} is never closed in the imported file", begin_of(open.scope));
   }
+  tokens_.end_part(outside_files);
   scopes_outside_import_ = outside;
   coordinate_systems_ = coordinate_systems;
   state_ = state;
@@ -60,7 +59,8 @@ void SceneParser::import_file(const SourceLocation& location) {
 
 std::shared_ptr<const SampledSpectrum> SceneParser::read_spectrum(const std::string& name,
                                                                   const SourceLocation& location) {
-  const std::filesystem::path path = locate_file(reader_, name, lexer_->file(), files_.front());
+  const std::filesystem::path path =
+      locate_file(reader_, name, *location.file, tokens_.main_file());
   auto& spectrum = spectra_[path.string()];
   if (spectrum == nullptr) {
     if (!reader_.exists(path)) {

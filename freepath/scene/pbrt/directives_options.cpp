@@ -22,7 +22,7 @@ void SceneParser::set_entity(std::optional<PbrtEntity>& entity, std::string_view
 }
 
 void SceneParser::option(const SourceLocation& /*location*/) {
-  scene_.options.add(parse_option(*lexer_, context()));
+  scene_.options.add(parse_option(tokens_, context()));
 }
 
 void SceneParser::color_space(const SourceLocation& /*location*/) {
@@ -32,7 +32,7 @@ void SceneParser::color_space(const SourceLocation& /*location*/) {
     const std::string_view names[] = {name_of(ColorSpace::kSrgb), name_of(ColorSpace::kDciP3),
                                       name_of(ColorSpace::kRec2020),
                                       name_of(ColorSpace::kAces2065)};
-    fail_at(lexer_->location(name), "there is no colour space {}{}", in_quotes(name.text),
+    fail_at(tokens_.location(name), "there is no colour space {}{}", in_quotes(name.text),
             did_you_mean(name.text, names));
   }
   state_.color_space = *space;

@@ -78,7 +78,7 @@ void SceneParser::attribute(const SourceLocation& location) {
   const Token target = expect_string("what the attributes are for");
   const auto* const found = std::ranges::find(kAttributeTargets, target.text);
   if (found == kAttributeTargets.end()) {
-    fail_at(lexer_->location(target),
+    fail_at(tokens_.location(target),
             "Attribute is for shape, light, material, medium or texture, not {}{}",
             in_quotes(target.text), did_you_mean(target.text, kAttributeTargets));
   }
@@ -123,7 +123,7 @@ void SceneParser::object_end(const SourceLocation& location) {
 void SceneParser::object_instance(const SourceLocation& location) {
   const Token name = expect_string("the name of an object");
   if (open_object_) fail_at(location, "ObjectInstance may not stand inside an object");
-  scene_.instances.push_back({lexer_->location(name), 0, state_.transform});
+  scene_.instances.push_back({tokens_.location(name), 0, state_.transform});
   instance_objects_.push_back(name.text);
 }
 

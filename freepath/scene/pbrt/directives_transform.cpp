@@ -92,7 +92,7 @@ void SceneParser::coord_sys_transform(const SourceLocation& /*location*/) {
   if (found == coordinate_systems_.end()) {
     std::vector<std::string_view> names;
     for (const auto& entry : coordinate_systems_) names.emplace_back(entry.first);
-    fail_at(lexer_->location(name), "there is no coordinate system {}{}", in_quotes(name.text),
+    fail_at(tokens_.location(name), "there is no coordinate system {}{}", in_quotes(name.text),
             did_you_mean(name.text, names));
   }
   state_.transform = found->second;
@@ -107,10 +107,10 @@ void SceneParser::transform_times(const SourceLocation& location) {
 }
 
 void SceneParser::active_transform(const SourceLocation& /*location*/) {
-  const Token which = lexer_->next();
+  const Token which = tokens_.next();
   const bool all = which.source == "All";
   if (!all && which.source != "StartTime" && which.source != "EndTime") {
-    fail_at(lexer_->location(which), "expected StartTime, EndTime or All, found {}",
+    fail_at(tokens_.location(which), "expected StartTime, EndTime or All, found {}",
             describe(which));
   }
   state_.start_active = all || which.source == "StartTime";

@@ -9,7 +9,7 @@ namespace freepath {
 void SceneParser::define(std::map<std::string, int, std::less<>>& names, const Token& name,
                          int index, std::string_view what) {
   if (names.emplace(name.text, index).second) return;
-  fail_at(lexer_->location(name), "{} {} is defined already", what, in_quotes(name.text));
+  fail_at(tokens_.location(name), "{} {} is defined already", what, in_quotes(name.text));
 }
 
 PbrtEntity SceneParser::expect_typed_parameters(const std::string& owner,
@@ -31,7 +31,7 @@ void SceneParser::make_named_material(const SourceLocation& location) {
 
 void SceneParser::named_material(const SourceLocation& /*location*/) {
   const Token name = expect_string("the name of a material");
-  material_references_.push_back({name.text, lexer_->location(name)});
+  material_references_.push_back({name.text, tokens_.location(name)});
   state_.named_material = name.text;
 }
 
@@ -46,7 +46,7 @@ void SceneParser::texture(const SourceLocation& location) {
   const Token name = expect_string("the name of a texture");
   const Token kind = expect_string("float or spectrum, the kind of a texture,");
   if (kind.text != "float" && kind.text != "spectrum") {
-    fail_at(lexer_->location(kind), "a texture is of kind float or spectrum, not {}",
+    fail_at(tokens_.location(kind), "a texture is of kind float or spectrum, not {}",
             in_quotes(kind.text));
   }
   const bool is_float = kind.text == "float";
@@ -70,11 +70,11 @@ void SceneParser::medium_interface(const SourceLocation& /*location*/) {
   const auto expect_medium = [&] {
     const Token name = expect_string("the name of a medium");
     // An empty name is vacuum.
-    if (!name.text.empty()) medium_references_.push_back({name.text, lexer_->location(name)});
+    if (!name.text.empty()) medium_references_.push_back({name.text, tokens_.location(name)});
     return name.text;
   };
   state_.inside_medium = expect_medium();
-  const bool has_outside = lexer_->peek().kind == TokenKind::kString;
+  const bool has_outside = tokens_.peek().kind == TokenKind::kString;
   state_.outside_medium = has_outside ? expect_medium() : state_.inside_medium;
 }
 

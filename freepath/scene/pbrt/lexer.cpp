@@ -60,8 +60,8 @@ std::string describe(const Token& token) {
   }
 }
 
-Lexer::Lexer(const std::string& file, std::string text)
-    : file_(std::make_shared<const std::string>(file)), text_(std::move(text)), rest_(text_) {}
+Lexer::Lexer(std::shared_ptr<const std::string> file, std::string text, int number)
+    : file_(std::move(file)), text_(std::move(text)), rest_(text_), number_(number) {}
 
 const Token& Lexer::peek() {
   if (!has_ahead_) {
@@ -80,6 +80,7 @@ Token Lexer::next() {
 Token Lexer::read() {
   skip_blanks();
   Token token;
+  token.file = number_;
   token.line = line_;
   token.column = column_;
   if (rest_.empty()) return token;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "freepath/scene/pbrt/source_location.h"
 
@@ -20,6 +21,7 @@ struct Token {
   double number = 0;        ///< Of a number; finite, and in the range of single precision.
   bool is_whole = false;    ///< Whether a number is written as an integer, with digits alone.
   int line = 1, column = 1;
+  int file = 0;  ///< Number of the file that it stands in, the lexer's.
 };
 
 /// What a message calls a token: "number 1.5", "'Shape'", "end of file".
@@ -31,7 +33,10 @@ std::string describe(const Token& token);
 class Lexer {
  public:
   /// @param file name of the file, for messages
-  Lexer(const std::string& file, std::string text);
+  /// @param number Token::file
+  Lexer(std::shared_ptr<const std::string> file, std::string text, int number = 0);
+  Lexer(const std::string& file, std::string text)
+      : Lexer(std::make_shared<const std::string>(file), std::move(text)) {}
   Lexer(const Lexer&) = delete;
   Lexer& operator=(const Lexer&) = delete;
 
@@ -58,6 +63,7 @@ class Lexer {
   std::shared_ptr<const std::string> file_;
   std::string text_;
   std::string_view rest_;
+  int number_;
   int line_ = 1, column_ = 1;
   Token ahead_;
   bool has_ahead_ = false;

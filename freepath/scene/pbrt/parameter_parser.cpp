@@ -73,22 +73,22 @@ std::string_view expected_token(ParameterType type) {
 /// Values of one parameter as they come in.
 class ValueReader {
  public:
-  ValueReader(Lexer& lexer, const ParameterContext& context, Parameter& parameter)
-      : lexer_(lexer), context_(context), parameter_(parameter) {}
+  ValueReader(TokenStream& tokens, const ParameterContext& context, Parameter& parameter)
+      : tokens_(tokens), context_(context), parameter_(parameter) {}
 
   /// Reads one value, or a list of them in brackets.
   void read() {
-    if (lexer_.peek().kind != TokenKind::kOpenBracket) {
-      add(lexer_.next());
+    if (tokens_.peek().kind != TokenKind::kOpenBracket) {
+      add(tokens_.next());
     } else {
-      const Token open = lexer_.next();
-      while (lexer_.peek().kind != TokenKind::kCloseBracket) {
-        if (lexer_.peek().kind == TokenKind::kEnd) {
-          fail_at(lexer_.location(open), "this bracket is never closed");
+      const Token open = tokens_.next();
+      while (tokens_.peek().kind != TokenKind::kCloseBracket) {
+        if (tokens_.peek().kind == TokenKind::kEnd) {
+          fail_at(tokens_.location(open), "this bracket is never closed");
         }
-        add(lexer_.next());
+        add(tokens_.next());
       }
-      lexer_.next();
+      tokens_.next();
     }
     finish();
   }
@@ -101,7 +101,7 @@ class ValueReader {
   void require_multiple(std::size_t count) const;
   [[noreturn]] void fail_value(const Token& token) const;
 
-  Lexer& lexer_;
+  TokenStream& tokens_;
   const ParameterContext& context_;
   Parameter& parameter_;
   std::vector<double> numbers_;
@@ -111,7 +111,7 @@ class ValueReader {
 };
 
 void ValueReader::fail_value(const Token& token) const {
-  fail_at(lexer_.location(token), "parameter {} of type {} expects {}, found {}",
+  fail_at(tokens_.location(token), "parameter {} of type {} expects {}, found {}",
           in_quotes(parameter_.name), name_of(parameter_.type), expected_token(parameter_.type),
           describe(token));
 }
@@ -120,7 +120,7 @@ void ValueReader::add_integer(const Token& token) {
   if (!token.is_whole) fail_value(token);
   if (token.number < std::numeric_limits<int>::min() ||
       token.number > std::numeric_limits<int>::max()) {
-    fail_at(lexer_.location(token), "integer {} is out of the range of 32 bits",
+    fail_at(tokens_.location(token), "integer {} is out of the range of 32 bits",
             in_quotes(token.source));
   }
   integers_.push_back(static_cast<int>(token.number));
@@ -227,7 +227,7 @@ void ValueReader::finish() {
   }
 }
 
-std::shared_ptr<const Parameter> parse_values(Lexer& lexer, const ParameterContext& context,
+std::shared_ptr<const Parameter> parse_values(TokenStream& tokens, const ParameterContext& context,
                                               Declaration declaration,
                                               const SourceLocation& location) {
   auto parameter = std::make_shared<Parameter>();
@@ -235,47 +235,48 @@ std::shared_ptr<const Parameter> parse_values(Lexer& lexer, const ParameterConte
   parameter->name = std::move(declaration.name);
   parameter->location = location;
   parameter->color_space = context.color_space;
-  ValueReader(lexer, context, *parameter).read();
+  ValueReader(tokens, context, *parameter).read();
   return parameter;
 }
 
-ParameterType type_of_option(Lexer& lexer, const std::string& name) {
-  const Token& value = lexer.peek();
+ParameterType type_of_option(TokenStream& tokens, const std::string& name) {
+  const Token& value = tokens.peek();
   if (value.kind == TokenKind::kString) return ParameterType::kString;
   if (value.source == "true" || value.source == "false") return ParameterType::kBool;
   if (value.kind == TokenKind::kNumber) {
     return value.is_whole ? ParameterType::kInteger : ParameterType::kFloat;
   }
-  fail_at(lexer.location(value), "option {} expects a number, a string, true or false, found {}",
+  fail_at(tokens.location(value), "option {} expects a number, a string, true or false, found {}",
           in_quotes(name), describe(value));
 }
 
 }  // namespace
 
-ParameterList parse_parameters(Lexer& lexer, const ParameterContext& context,
+ParameterList parse_parameters(TokenStream& tokens, const ParameterContext& context,
                                const std::string& owner, const SourceLocation& location) {
   ParameterList list(owner, location);
-  for (std::size_t count = 0; lexer.peek().kind == TokenKind::kString; ++count) {
-    const Token token = lexer.next();
-    const SourceLocation place = lexer.location(token);
+  for (std::size_t count = 0; tokens.peek().kind == TokenKind::kString; ++count) {
+    const Token token = tokens.next();
+    const SourceLocation place = tokens.location(token);
     if (count == kMostParameters) {
       fail_at(place, "{} has more than {} parameters", owner, kMostParameters);
     }
-    list.add(parse_values(lexer, context, parse_declaration(token, place), place));
+    list.add(parse_values(tokens, context, parse_declaration(token, place), place));
   }
   return list;
 }
 
-std::shared_ptr<const Parameter> parse_option(Lexer& lexer, const ParameterContext& context) {
-  const Token token = lexer.next();
-  const SourceLocation place = lexer.location(token);
+std::shared_ptr<const Parameter> parse_option(TokenStream& tokens,
+                                              const ParameterContext& context) {
+  const Token token = tokens.next();
+  const SourceLocation place = tokens.location(token);
   const std::vector<std::string> words = words_of(token.text);
   if (token.kind != TokenKind::kString || words.empty() || words.size() > 2) {
     fail_at(place, "Option expects the name of an option as a string, found {}", describe(token));
   }
   const ParameterType type =
-      words.size() == 2 ? parse_type(words[0], place) : type_of_option(lexer, words[0]);
-  return parse_values(lexer, context, {type, words.back()}, place);
+      words.size() == 2 ? parse_type(words[0], place) : type_of_option(tokens, words[0]);
+  return parse_values(tokens, context, {type, words.back()}, place);
 }
 
 std::shared_ptr<const SampledSpectrum> parse_spectrum_file(Lexer& lexer) {

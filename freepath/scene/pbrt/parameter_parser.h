@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "freepath/scene/pbrt/lexer.h"
 #include "freepath/scene/pbrt/parameter_list.h"
+#include "freepath/scene/pbrt/token_stream.h"
 
 namespace freepath {
 
@@ -20,16 +20,16 @@ struct ParameterContext {
       read_spectrum;
 };
 
-/// Reads parameters up to the next token that is no string, and leaves that in the lexer.
+/// Reads parameters up to the next token that is no string, and leaves that in the stream.
 /// @param owner what messages call the statement
 /// @throws Error, beginning "file:line:column: ", for an unknown type, a missing or surplus value,
 ///   one of another type, a name given twice
-ParameterList parse_parameters(Lexer& lexer, const ParameterContext& context,
+ParameterList parse_parameters(TokenStream& tokens, const ParameterContext& context,
                                const std::string& owner, const SourceLocation& location);
 
 /// The name and the one value of an Option directive. The type, which pbrt leaves out there, is
 /// that of the value: integer, float, bool or string.
-std::shared_ptr<const Parameter> parse_option(Lexer& lexer, const ParameterContext& context);
+std::shared_ptr<const Parameter> parse_option(TokenStream& tokens, const ParameterContext& context);
 
 /// The numbers of a spectrum file, pairs of wavelength [nm] and value.
 /// @throws Error, beginning "file:line:column: "

@@ -57,17 +57,16 @@ const std::vector<SceneParser::DirectiveInfo>& SceneParser::directives() {
 
 PbrtScene SceneParser::parse(std::string text, const std::string& name) {
   scene_.file = name;
-  files_.emplace_back(std::filesystem::path(name).lexically_normal());
-  Lexer lexer(name, std::move(text));
-  const SourceLocation start = lexer.location(Token{});
+  tokens_.open(name, std::move(text));
+  const SourceLocation start = tokens_.location(Token{});
   scene_.options = ParameterList("Option", start);
   PbrtMaterial standard;
   standard.type = "diffuse";
   standard.location = start;
   standard.parameters = ParameterList("Material 'diffuse'", start);
   scene_.materials.push_back(standard);
-  parse_directives(lexer);
-  const SourceLocation end = lexer.location(lexer.peek());
+  parse_directives();
+  const SourceLocation end = tokens_.location(tokens_.peek());
   if (!scopes_.empty()) {
     const OpenScope& open = scopes_.back();
     fail_at(open.location, "this {} is never closed", begin_of(open.scope));
@@ -77,13 +76,12 @@ PbrtScene SceneParser::parse(std::string text, const std::string& name) {
   return std::move(scene_);
 }
 
-void SceneParser::parse_directives(Lexer& lexer) {
-  Lexer* const outer = std::exchange(lexer_, &lexer);
-  while (lexer.peek().kind != TokenKind::kEnd) {
-    const Token token = lexer.next();
-    run_directive(token, lexer.location(token));
+void SceneParser::parse_directives() {
+  while (tokens_.peek().kind != TokenKind::kEnd) {
+    tokens_.free_finished();
+    const Token token = tokens_.next();
+    run_directive(token, tokens_.location(token));
   }
-  lexer_ = outer;
 }
 
 void SceneParser::run_directive(const Token& token, const SourceLocation& location) {
@@ -109,33 +107,33 @@ void SceneParser::run_directive(const Token& token, const SourceLocation& locati
 }
 
 Token SceneParser::expect_string(std::string_view what) {
-  Token token = lexer_->next();
+  Token token = tokens_.next();
   if (token.kind == TokenKind::kString) return token;
-  fail_at(lexer_->location(token), "expected {} as a string, found {}", what, describe(token));
+  fail_at(tokens_.location(token), "expected {} as a string, found {}", what, describe(token));
 }
 
 double SceneParser::expect_number(std::string_view what) {
-  const Token token = lexer_->next();
+  const Token token = tokens_.next();
   if (token.kind == TokenKind::kNumber) return token.number;
-  fail_at(lexer_->location(token), "expected {}, found {}", what, describe(token));
+  fail_at(tokens_.location(token), "expected {}, found {}", what, describe(token));
 }
 
 void SceneParser::expect_numbers(double* numbers, int count, std::string_view what) {
   // Some exporters put the numbers of any transform into brackets.
-  const bool bracketed = lexer_->peek().kind == TokenKind::kOpenBracket;
-  if (bracketed) lexer_->next();
+  const bool bracketed = tokens_.peek().kind == TokenKind::kOpenBracket;
+  if (bracketed) tokens_.next();
   for (int i = 0; i < count; ++i) {
-    const Token token = lexer_->next();
+    const Token token = tokens_.next();
     if (token.kind != TokenKind::kNumber) {
-      fail_at(lexer_->location(token), "expected number {} of the {} of {}, found {}", i + 1, count,
+      fail_at(tokens_.location(token), "expected number {} of the {} of {}, found {}", i + 1, count,
               what, describe(token));
     }
     numbers[i] = token.number;
   }
   if (!bracketed) return;
-  const Token close = lexer_->next();
+  const Token close = tokens_.next();
   if (close.kind != TokenKind::kCloseBracket) {
-    fail_at(lexer_->location(close), "expected ']' after the {} numbers of {}, found {}", count,
+    fail_at(tokens_.location(close), "expected ']' after the {} numbers of {}, found {}", count,
             what, describe(close));
   }
 }
@@ -154,7 +152,7 @@ ParameterContext SceneParser::context() {
 
 ParameterList SceneParser::expect_parameters(const std::string& owner,
                                              const SourceLocation& location) {
-  return parse_parameters(*lexer_, context(), owner, location);
+  return parse_parameters(tokens_, context(), owner, location);
 }
 
 ParameterList SceneParser::expect_parameters(const std::string& owner,
@@ -166,9 +164,9 @@ ParameterList SceneParser::expect_parameters(const std::string& owner,
 }
 
 Token SceneParser::expect_type(std::string_view directive) {
-  Token type = lexer_->next();
+  Token type = tokens_.next();
   if (type.kind == TokenKind::kString) return type;
-  fail_at(lexer_->location(type), "expected the type of {} as a string, found {}", directive,
+  fail_at(tokens_.location(type), "expected the type of {} as a string, found {}", directive,
           describe(type));
 }
 

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "freepath/scene/pbrt/lexer.h"
 #include "freepath/scene/pbrt/parameter_parser.h"
 #include "freepath/scene/pbrt/parser.h"
+#include "freepath/scene/pbrt/token_stream.h"
 
 namespace freepath {
 
@@ -68,7 +68,7 @@ class SceneParser {
   };
 
   // scene_parser.cpp
-  void parse_directives(Lexer& lexer);
+  void parse_directives();
   void run_directive(const Token& token, const SourceLocation& location);
   Token expect_string(std::string_view what);
   Token expect_type(std::string_view directive);
@@ -91,7 +91,7 @@ class SceneParser {
   // directives_files.cpp
   void include_file(const SourceLocation& location);
   void import_file(const SourceLocation& location);
-  void parse_file(const Token& name, const SourceLocation& location);
+  void open_file(const Token& name, const SourceLocation& location);
   std::string read_named_file(const std::filesystem::path& path, const SourceLocation& location);
 
   // directives_transform.cpp
@@ -172,8 +172,7 @@ class SceneParser {
   std::optional<int> open_object_;
   std::map<std::string, TransformPair, std::less<>> coordinate_systems_;
 
-  Lexer* lexer_ = nullptr;                    ///< Of the file in hand.
-  std::vector<std::filesystem::path> files_;  ///< Open ones, the main file first.
+  TokenStream tokens_;
   std::size_t files_read_ = 0;
   std::map<std::string, std::shared_ptr<const SampledSpectrum>> spectra_;
 
