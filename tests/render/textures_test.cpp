@@ -10,6 +10,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
+#include "freepath/render/textures/texture_noise.h"
 #include "freepath/render/textures/texture_table.h"
 #include "freepath/spectra/rgb_color_space.h"
 
@@ -62,7 +63,7 @@ TEST(ImageMap, WrapsAtItsEdges) {
 }
 
 TEST(ImageMap, MapsScalesAndInverts) {
-  ImageMapTexture texture{four_greys(), {2, 3, 0.25F, -0.25F}};
+  ImageMapTexture texture{four_greys(), UvMapping{2, 3, 0.25F, -0.25F}};
   EXPECT_EQ(looked_up(texture, 0.25F, 1 / 3.0F), 2);  // s = 0.75, t = 0.75
   texture.mapping = {};
   texture.scale = 0.125F;
@@ -101,7 +102,7 @@ TEST(ImageMap, OfColoursIsAReflectance) {
 TEST(Checkerboard, ChangesAtEveryWhole) {
   TextureTable table;
   const FloatTextureId board =
-      table.add(FloatTexture(CheckerboardTexture<FloatInput>{1.0F, 2.0F, {4, 2}}));
+      table.add(FloatTexture(CheckerboardTexture<FloatInput>{1.0F, 2.0F, UvMapping{4, 2}}));
   EXPECT_EQ(table.evaluate_float(board, at(0.1F, 0.1F)), 1);
   EXPECT_EQ(table.evaluate_float(board, at(0.26F, 0.1F)), 2);
   EXPECT_EQ(table.evaluate_float(board, at(0.1F, 0.6F)), 2);
@@ -191,6 +192,164 @@ TEST(ReadTextureImage, LeavesFloatsAsTheyAreAndOpaqueAlphaOut) {
   EXPECT_EQ(read_texture_image(file.path)->channels(), 4);
   write_exr(file.path, {1, 1, {"Y"}, {0.25F}});
   EXPECT_EQ(read_texture_image(file.path)->channels(), 1);
+}
+
+SurfacePoint in_world(const Vec3f& position) {
+  SurfacePoint point;
+  point.position = position;
+  return point;
+}
+
+/// A texture twice as large as the world, and moved.
+Matrix4d doubled() { return Matrix4d().setTranslation(Vec3d(2, 4, 6)) * Matrix4d().setScale(0.5); }
+
+void expect_coordinates(const TextureMapping& mapping, const Vec3f& position, double s, double t) {
+  const SurfacePoint point = in_world(position);
+  const TextureCoordinates at = mapped(mapping, {point, Vec3d(position)});
+  EXPECT_NEAR(at.s, s, 1e-6);
+  EXPECT_NEAR(at.t, t, 1e-6);
+}
+
+TEST(Mapping, PlanarProjectsOnTwoVectors) {
+  expect_coordinates(PlanarTextureMapping{}, {3, 4, 5}, 3, 4);
+  // (3, 4, 5) is (2.5, 4, 5.5) there.
+  expect_coordinates(PlanarTextureMapping{doubled(), Vec3d(0, 2, 0), Vec3d(1, 0, 1), 0.25, -8},
+                     {3, 4, 5}, 2 * 4 + 0.25, 2.5 + 5.5 - 8);
+}
+
+TEST(Mapping, SphericalHasThePoleAtZ) {
+  const SphericalTextureMapping mapping{doubled()};
+  const auto expect = [&](const Vec3f& there, double s, double t) {
+    expect_coordinates(mapping, there * 2 - Vec3f(2, 4, 6), s, t);
+  };
+  expect({0, 0, 3}, 0, 0);
+  expect({0, 0, -3}, 1, 0);
+  expect({2, 0, 0}, 0.5, 0);
+  expect({0, 2, 0}, 0.5, 0.25);
+  expect({-1, 0, 0}, 0.5, 0.5);
+  expect({0, -1, 0}, 0.5, 0.75);
+  expect({1, 1, std::sqrt(2.0F)}, 0.25, 0.125);
+}
+
+TEST(Mapping, CylindricalBeginsAtMinusX) {
+  const CylindricalTextureMapping mapping{doubled()};
+  const auto expect = [&](const Vec3f& there, double s, double t) {
+    expect_coordinates(mapping, there * 2 - Vec3f(2, 4, 6), s, t);
+  };
+  expect({2, 0, 7}, 0.5, 7);
+  expect({0, 3, -1}, 0.75, -1);
+  expect({0, -3, 0}, 0.25, 0);
+  expect({-1, 0, 0}, 1, 0);
+  expect({1, -1, 0}, 0.375, 0);
+}
+
+TEST(Mapping, IsThatOfImagesBoardsAndDots) {
+  const TextureMapping mapping = PlanarTextureMapping{{}, Vec3d(0, 1, 0), Vec3d(0, 0, 1)};
+  const SurfacePoint point = in_world({9, 0.75F, 0.25F});
+  TextureTable table;
+  EXPECT_EQ(
+      table.evaluate_float(table.add(FloatTexture(ImageMapTexture{four_greys(), mapping})), point),
+      4);
+  const auto board = table.add(FloatTexture(CheckerboardTexture<FloatInput>{1.0F, 2.0F, mapping}));
+  EXPECT_EQ(table.evaluate_float(board, point), 1);
+  EXPECT_EQ(table.evaluate_float(board, in_world({9, 1.75F, 0.25F})), 2);
+}
+
+TEST(Bilerp, IsTheValueOfItsCornersAndGoesOnBeyondThem) {
+  TextureTable table;
+  const auto id = table.add(FloatTexture(BilerpTexture<FloatInput>{1.0F, 2.0F, 4.0F, 16.0F, {}}));
+  EXPECT_EQ(table.evaluate_float(id, at(0, 0)), 1);
+  EXPECT_EQ(table.evaluate_float(id, at(0, 1)), 2);
+  EXPECT_EQ(table.evaluate_float(id, at(1, 0)), 4);
+  EXPECT_EQ(table.evaluate_float(id, at(1, 1)), 16);
+  EXPECT_EQ(table.evaluate_float(id, at(0.25F, 0.5F)), (0.75F * 3 + 0.25F * 20) / 2);
+  EXPECT_EQ(table.evaluate_float(id, at(2, 0)), 7);
+}
+
+TEST(Dots, HaveAnInsideAndAnOutside) {
+  TextureTable table;
+  const auto id = table.add(FloatTexture(DotsTexture<FloatInput>{3.0F, 5.0F, {}}));
+  int inside = 0;
+  for (int i = 0; i < 100; ++i) {
+    const SurfacePoint point = at(0.13F * static_cast<float>(i), 0.07F * static_cast<float>(i));
+    const bool dot = in_polka_dot(point.u, point.v);
+    inside += dot ? 1 : 0;
+    EXPECT_EQ(table.evaluate_float(id, point), dot ? 3 : 5);
+  }
+  EXPECT_GT(inside, 5);
+  EXPECT_LT(inside, 95);
+}
+
+TEST(DirectionMix, GoesByTheCosineToItsDirection) {
+  TextureTable table;
+  const auto id =
+      table.add(FloatTexture(DirectionMixTexture<FloatInput>{10.0F, 20.0F, Vec3f(0.6F, 0, 0.8F)}));
+  const auto seen = [&](const Vec3f& normal) {
+    SurfacePoint point;
+    point.normal = normal;
+    point.shading_normal = Vec3f(0, 1, 0);  // which has no part in it
+    return table.evaluate_float(id, point);
+  };
+  EXPECT_FLOAT_EQ(seen({0, 0, 1}), 0.8F * 10 + 0.2F * 20);
+  EXPECT_FLOAT_EQ(seen({-1, 0, 0}), 0.6F * 10 + 0.4F * 20);
+  EXPECT_FLOAT_EQ(seen({0, 1, 0}), 20);
+}
+
+/// How many textures are evaluated for one that is made of the one before it twice, N times over.
+template <class Id, class First, class Next, class Evaluate>
+uint64_t evaluated(int depth, const First& first, const Next& next, const Evaluate& evaluate) {
+  TextureTable table;
+  Id last = table.add(first);
+  for (int i = 0; i < depth; ++i) last = table.add(next(last));
+  uint64_t count = 0;
+  evaluate(table, last, count);
+  return count;
+}
+
+// Without memory they would be 2^N.
+TEST(NestedTextures, AreEvaluatedOnceEach) {
+  SpectrumTable spectra(rgb_color_space("srgb"));
+  const SpectrumId half = spectra.add(0.5, SpectrumRole::kReflectance);
+  const SpectrumValues rgb = spectra.in_rgb();
+  for (const int depth : {15, 60}) {
+    const auto floats = [&](const auto& next) {
+      return evaluated<FloatTextureId>(
+          depth, FloatTexture(0.5F), next,
+          [](const TextureTable& table, FloatTextureId id, uint64_t& count) {
+            EXPECT_FLOAT_EQ(table.evaluate_float(id, at(0.25F, 0.5F), &count), 0.5F);
+          });
+    };
+    const auto colors = [&](const auto& next) {
+      return evaluated<SpectrumTextureId>(
+          depth, SpectrumTexture(half), next,
+          [&](const TextureTable& table, SpectrumTextureId id, uint64_t& count) {
+            const Channels found = table.evaluate_spectrum(id, at(0.25F, 0.5F), rgb, &count);
+            EXPECT_FLOAT_EQ(found[1], 0.5F);
+          });
+    };
+    const uint64_t each = depth + 1;
+    EXPECT_EQ(floats([](FloatTextureId last) {
+                return FloatTexture(MixTexture<FloatInput>{last, last, last});
+              }),
+              each);
+    EXPECT_EQ(floats([](FloatTextureId last) {
+                return FloatTexture(BilerpTexture<FloatInput>{last, last, last, last, {}});
+              }),
+              each);
+    EXPECT_EQ(
+        floats([](FloatTextureId last) {
+          return FloatTexture(DirectionMixTexture<FloatInput>{last, last, Vec3f(0.6F, 0, 0.8F)});
+        }),
+        each);
+    EXPECT_EQ(colors([](SpectrumTextureId last) {
+                return SpectrumTexture(MixTexture<SpectrumInput>{last, last, 0.25F});
+              }),
+              each);
+    EXPECT_EQ(colors([](SpectrumTextureId last) {
+                return SpectrumTexture(BilerpTexture<SpectrumInput>{last, last, last, last, {}});
+              }),
+              each);
+  }
 }
 
 }  // namespace

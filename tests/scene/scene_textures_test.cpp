@@ -29,8 +29,8 @@ const std::string kReflectance = R"(Material "diffuse" "texture reflectance" "t"
 
 /// Every pixel, row by row from the top.
 void expect_pixels(const std::string& name, const std::string& scene, int pixels,
-                   const std::vector<Vec3d>& expected) {
-  const Picture picture = render_text(scene, {.samples = 20000});
+                   const std::vector<Vec3d>& expected, uint32_t samples = 20000) {
+  const Picture picture = render_text(scene, {.samples = samples});
   expect_sound(picture);
   ASSERT_EQ(expected.size(), picture.image.pixel_count());
   const char* const names[] = {"R", "G", "B"};
@@ -40,7 +40,7 @@ void expect_pixels(const std::string& name, const std::string& scene, int pixels
     for (int i = 0; i < pixels * pixels; ++i) {
       const float* const pixel = picture.image.pixel(i % pixels, i / pixels);
       EXPECT_TRUE(check_mean(fmt::format("{} {} of pixel {}", name, names[c], i), pixel[value],
-                             std::sqrt(pixel[variance]), 20000, expected[i][c],
+                             std::sqrt(pixel[variance]), samples, expected[i][c],
                              {.absolute = 1e-4, .largest_relative_error = 0.0025}));
     }
   }
@@ -85,6 +85,83 @@ TEST(SceneTexture, CheckerboardChangesWithUAndV) {
     }
   }
   expect_pixels("board", textured(board, kReflectance, 4), 4, expected);
+}
+
+/// Cubes of side 1/4 that are moved half a cube along x: the squares are those where they meet the
+/// plane. The origin of rays lies elsewhere.
+TEST(SceneTexture, CheckerboardsOfCubesLieInTheirSpace) {
+  const std::string board =
+      R"(AttributeBegin Translate .125 0 .1 Scale .25 .25 .25
+         Texture "t" "spectrum" "checkerboard" "integer dimension" 3 )"
+      R"("rgb tex1" [ .8 .4 .2 ] "rgb tex2" [ .1 .3 .5 ] AttributeEnd)";
+  const Vec3d one(.8, .4, .2);
+  const Vec3d two(.1, .3, .5);
+  std::vector<Vec3d> expected;
+  for (int row = 0; row < 8; ++row) {
+    for (int column = 0; column < 8; ++column) {
+      const int x = (column + 1) / 2 - 1;  // floor((column / 8 - 1/8) · 4)
+      const int y = (7 - row) / 2;
+      const int z = -1;
+      expected.push_back((x + y + z) % 2 == 0 ? one : two);
+    }
+  }
+  expect_pixels("cubes", textured(board, kReflectance, 8), 8, expected, 1000);
+}
+
+// Around the middle of the unit square, seen along the axis of the mapping, the angle goes from 0
+// to 1 in four quarters, whose means are 1/8, 3/8, 5/8 and 7/8.
+TEST(SceneTexture, MappingsGoAroundTheirAxis) {
+  const auto seen = [](const std::string& mapping, const std::string& values,
+                       const std::vector<Vec3d>& expected) {
+    expect_pixels(
+        mapping,
+        textured("AttributeBegin Translate .5 .5 -2 Texture \"t\" \"spectrum\" \"bilerp\" "
+                 "\"string mapping\" \"" +
+                     mapping + "\" " + values + " AttributeEnd",
+                 kReflectance, 2),
+        2, expected);
+  };
+  const auto share = [](int eighths) { return 0.5 + 0.5 * eighths / 8; };
+  seen("spherical", R"("rgb v00" [ .5 .5 .5 ] "rgb v10" [ .5 .5 .5 ])",
+       greys({share(3), share(1), share(5), share(7)}));
+  // It begins at -x, and t, which is the height 2, has no part in it.
+  seen("cylindrical", R"("rgb v00" [ .5 .5 .5 ] "rgb v01" [ .5 .5 .5 ] "rgb v10" [ 1 1 1 ])",
+       greys({share(7), share(5), share(1), share(3)}));
+}
+
+TEST(SceneTexture, PlanarMappingIsByTwoVectors) {
+  const std::string board =
+      R"(Texture "t" "spectrum" "checkerboard" "string mapping" "planar" "vector3 v1" [ 2 0 0 ] )"
+      R"("vector3 v2" [ 0 4 0 ] "float vdelta" 1 )"
+      R"("rgb tex1" [ .8 .4 .2 ] "rgb tex2" [ .1 .3 .5 ])";
+  std::vector<Vec3d> expected;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      expected.push_back((column / 2 + (3 - row) + 1) % 2 == 0 ? Vec3d(.8, .4, .2)
+                                                               : Vec3d(.1, .3, .5));
+    }
+  }
+  expect_pixels("planar", textured(board, kReflectance, 4), 4, expected, 1000);
+}
+
+// Pixels see the means of quarters, which are the values at their middles.
+TEST(SceneTexture, BilerpIsTheMeanOfItsCorners) {
+  expect_pixels(
+      "bilerp",
+      textured(R"(Texture "t" "spectrum" "bilerp" "rgb v00" [ .1 .1 .1 ] "rgb v01" [ .2 .2 .2 ] )"
+               R"("rgb v10" [ .4 .4 .4 ] "rgb v11" [ .8 .8 .8 ])",
+               kReflectance, 2),
+      2,
+      greys({(3 * .1 + .4 + 9 * .2 + 3 * .8) / 16, (.1 + 3 * .4 + 3 * .2 + 9 * .8) / 16,
+             (9 * .1 + 3 * .4 + 3 * .2 + .8) / 16, (3 * .1 + 9 * .4 + .2 + 3 * .8) / 16}));
+}
+
+TEST(SceneTexture, DirectionsMix) {
+  expect_pixels("directionmix",
+                textured(R"(Texture "t" "spectrum" "directionmix" "vector3 dir" [ 3 0 4 ] )"
+                         R"("rgb tex1" [ .8 .4 .2 ] "rgb tex2" [ .1 .3 .5 ])",
+                         kReflectance, 1),
+                1, {Vec3d(.8, .4, .2) * .8 + Vec3d(.1, .3, .5) * .2}, 1000);
 }
 
 /// A file of grey pixels, row by row from the top.

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "freepath/render/textures/image_texture.h"
+#include "freepath/render/textures/texture_mapping.h"
 #include "freepath/spectra/spectrum_table.h"
 
 namespace freepath {
@@ -28,18 +29,11 @@ struct SpectrumTextureId {
 using FloatInput = std::variant<float, FloatTextureId>;
 using SpectrumInput = std::variant<SpectrumId, SpectrumTextureId>;
 
-/// From the texture coordinates of a surface to those of a texture:
-/// s = uscale · u + udelta, t = vscale · v + vdelta.
-struct UvMapping {
-  float uscale = 1, vscale = 1;
-  float udelta = 0, vdelta = 0;
-};
-
 /// An image on the surface. Float textures take the mean of the colour channels, or alpha where an
 /// image has one that isn't 1 everywhere.
 struct ImageMapTexture {
   std::shared_ptr<const TextureImage> image;
-  UvMapping mapping;
+  TextureMapping mapping = {};
   ImageWrap wrap = ImageWrap::kRepeat;
   float scale = 1;
   bool invert = false;  ///< 1 - value, after the scale, not below 0.
@@ -59,16 +53,73 @@ struct MixTexture {
   FloatInput amount = 0.5F;
 };
 
-/// Squares of side 1 in (s, t): tex1 where floor(s) + floor(t) is even, else tex2. Point sampled.
+/// The same by direction: |n · dir| of tex1, the rest of tex2, where n is the geometric normal.
+template <class Input>
+struct DirectionMixTexture {
+  Input tex1, tex2;
+  Vec3f dir{0, 1, 0};  ///< Unit [world].
+};
+
+/// Squares of side 1 in (s, t), or cubes in space: tex1 where the sum of the coordinates' whole
+/// numbers is even, else tex2. Point sampled.
 template <class Input>
 struct CheckerboardTexture {
   Input tex1, tex2;
-  UvMapping mapping;
+  std::variant<TextureMapping, SolidMapping> mapping = {};
 };
 
-using FloatTexture = std::variant<float, ImageMapTexture, ScaleTexture<FloatInput>,
-                                  MixTexture<FloatInput>, CheckerboardTexture<FloatInput>>;
-using SpectrumTexture = std::variant<SpectrumId, ImageMapTexture, ScaleTexture<SpectrumInput>,
-                                     MixTexture<SpectrumInput>, CheckerboardTexture<SpectrumInput>>;
+/// Bilinear in (s, t), v10 at s = 1, t = 0; beyond the square of side 1 it goes on.
+template <class Input>
+struct BilerpTexture {
+  Input v00, v01, v10, v11;
+  TextureMapping mapping = {};
+};
+
+/// in_polka_dot() of (s, t).
+template <class Input>
+struct DotsTexture {
+  Input inside, outside;
+  TextureMapping mapping = {};
+};
+
+/// fractal_motion()
+struct FbmTexture {
+  SolidMapping mapping;
+  int octaves = 8;
+  float omega = 0.5F;
+};
+
+/// turbulence()
+struct WrinkledTexture {
+  SolidMapping mapping;
+  int octaves = 8;
+  float omega = 0.5F;
+};
+
+/// Waves on water: six octaves of noise, times the absolute value of three that are ten times as
+/// large.
+struct WindyTexture {
+  SolidMapping mapping;
+};
+
+/// Layers along y, bent by `variation` times noise; marble_color() of their sine.
+struct MarbleTexture {
+  SolidMapping mapping;
+  int octaves = 8;
+  float omega = 0.5F;
+  float scale = 1;
+  float variation = 0.2F;
+};
+
+using FloatTexture =
+    std::variant<float, ImageMapTexture, ScaleTexture<FloatInput>, MixTexture<FloatInput>,
+                 DirectionMixTexture<FloatInput>, CheckerboardTexture<FloatInput>,
+                 BilerpTexture<FloatInput>, DotsTexture<FloatInput>, FbmTexture, WrinkledTexture,
+                 WindyTexture>;
+using SpectrumTexture =
+    std::variant<SpectrumId, ImageMapTexture, ScaleTexture<SpectrumInput>,
+                 MixTexture<SpectrumInput>, DirectionMixTexture<SpectrumInput>,
+                 CheckerboardTexture<SpectrumInput>, BilerpTexture<SpectrumInput>,
+                 DotsTexture<SpectrumInput>, MarbleTexture>;
 
 }  // namespace freepath

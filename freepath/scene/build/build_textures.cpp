@@ -10,35 +10,61 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "freepath/scene/build/build_inputs.h"
+#include "freepath/scene/build/build_texture_mappings.h"
 
 namespace freepath {
 namespace {
 
-constexpr std::array<std::string_view, 5> kTextures = {"checkerboard", "constant", "imagemap",
-                                                       "mix", "scale"};
-constexpr std::array<std::string_view, 8> kUnsupportedTextures = {
-    "bilerp", "directionmix", "dots", "fbm", "marble", "ptex", "windy", "wrinkled"};
+/// Those of both kinds, and of one alone.
+constexpr std::array<std::string_view, 8> kTextures = {
+    "bilerp", "checkerboard", "constant", "directionmix", "dots", "imagemap", "mix", "scale"};
+constexpr std::array<std::string_view, 3> kFloatTextures = {"fbm", "windy", "wrinkled"};
+constexpr std::array<std::string_view, 1> kSpectrumTextures = {"marble"};
+constexpr std::array<std::string_view, 1> kUnsupportedTextures = {"ptex"};
+
+constexpr int kMostOctaves = 64;
 
 /// Textures within textures are evaluated by recursion.
 constexpr int kDeepestTexture = 64;
 
-UvMapping uv_mapping(const ParameterList& list) {
-  const std::string mapping = list.get_string("mapping", "uv");
-  if (mapping != "uv") {
-    fail_at(list.location_of("mapping"), "the mapping {} is not supported; use 'uv'",
-            in_quotes(mapping));
-  }
-  const auto number = [&list](std::string_view name, double otherwise) {
-    return static_cast<float>(list.get_float(name, otherwise));
-  };
-  return {number("uscale", 1), number("vscale", 1), number("udelta", 0), number("vdelta", 0)};
-}
-
 /// Which kind of texture a parameter of a texture takes.
 PbrtTextureKind kind_of(const PbrtTexture& owner, std::string_view parameter) {
   return parameter == "scale" || parameter == "amount" ? PbrtTextureKind::kFloat : owner.kind;
+}
+
+template <class Names>
+bool is_among(const Names& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// @throws Error if there is no texture of that type and kind
+void check_type(const PbrtTexture& texture) {
+  const bool is_float = texture.kind == PbrtTextureKind::kFloat;
+  if (is_among(kTextures, texture.type)) return;
+  const bool of_floats = is_among(kFloatTextures, texture.type);
+  const bool of_spectra = is_among(kSpectrumTextures, texture.type);
+  if (is_float ? of_floats : of_spectra) return;
+  if (of_floats || of_spectra) {
+    fail_at(texture.location, "the texture {} is always of kind {}", in_quotes(texture.type),
+            of_floats ? "float" : "spectrum");
+  }
+  std::vector<std::string_view> known(kTextures.begin(), kTextures.end());
+  known.insert(known.end(), kFloatTextures.begin(), kFloatTextures.end());
+  known.insert(known.end(), kSpectrumTextures.begin(), kSpectrumTextures.end());
+  std::ranges::sort(known);
+  fail_unknown_type(texture, "texture", known, kUnsupportedTextures);
+}
+
+int octaves_of(const ParameterList& list) {
+  const int octaves = list.get_integer("octaves", 8);
+  if (octaves < 0 || octaves > kMostOctaves) {
+    fail_at(list.location_of("octaves"), "parameter 'octaves' is {}; it must be from 0 to {}",
+            octaves, kMostOctaves);
+  }
+  return octaves;
 }
 
 /// Builds textures after those that they are made of.
@@ -67,7 +93,7 @@ class TextureBuilder {
   Texture compound(const PbrtTexture& texture, const Get& get);
   FloatTexture float_texture(const PbrtTexture& texture);
   SpectrumTexture spectrum_texture(const PbrtTexture& texture, ColorMeaning meaning);
-  ImageMapTexture image_map(const ParameterList& list);
+  ImageMapTexture image_map(const PbrtTexture& described);
   std::shared_ptr<const TextureImage> image(const ParameterList& list);
 
   BuildContext& context_;
@@ -148,9 +174,7 @@ int TextureBuilder::build_parts(const Job& job, int depth) {
 
 void TextureBuilder::add(const Job& job) {
   const PbrtTexture& texture = context_.pbrt.textures[job.texture];
-  if (std::find(kTextures.begin(), kTextures.end(), texture.type) == kTextures.end()) {
-    fail_unknown_type(texture, "texture", kTextures, kUnsupportedTextures);
-  }
+  check_type(texture);
   TextureTable& table = context_.scene.textures;
   if (texture.kind == PbrtTextureKind::kFloat) {
     context_.float_textures[texture.name] = table.add(float_texture(texture));
@@ -166,7 +190,7 @@ void TextureBuilder::add(const Job& job) {
 template <class Texture, class Input, class Get>
 Texture TextureBuilder::compound(const PbrtTexture& texture, const Get& get) {
   const ParameterList& list = texture.parameters;
-  if (texture.type == "imagemap") return image_map(list);
+  if (texture.type == "imagemap") return image_map(texture);
   if (texture.type == "scale") {
     return ScaleTexture<Input>{get("tex", 1.0), float_input(context_, list, "scale", 1)};
   }
@@ -174,17 +198,42 @@ Texture TextureBuilder::compound(const PbrtTexture& texture, const Get& get) {
     return MixTexture<Input>{get("tex1", 0.0), get("tex2", 1.0),
                              float_input(context_, list, "amount", 0.5)};
   }
+  if (texture.type == "directionmix") {
+    return DirectionMixTexture<Input>{get("tex1", 0.0), get("tex2", 1.0),
+                                      texture_direction(context_, texture, "dir", Vec3d(0, 1, 0))};
+  }
+  if (texture.type == "dots") {
+    return DotsTexture<Input>{get("inside", 1.0), get("outside", 0.0),
+                              texture_mapping(context_, texture)};
+  }
+  if (texture.type == "bilerp") {
+    return BilerpTexture<Input>{get("v00", 0.0), get("v01", 1.0), get("v10", 0.0), get("v11", 1.0),
+                                texture_mapping(context_, texture)};
+  }
+  CheckerboardTexture<Input> board{get("tex1", 1.0), get("tex2", 0.0)};
   const int dimension = list.get_integer("dimension", 2);
-  if (dimension != 2) {
-    fail_at(list.location_of("dimension"), "a checkerboard of dimension {} is not supported; use 2",
+  if (dimension == 2) {
+    board.mapping = texture_mapping(context_, texture);
+  } else if (dimension == 3) {
+    board.mapping = solid_mapping(context_, texture);
+  } else {
+    fail_at(list.location_of("dimension"), "there is no checkerboard of dimension {}; use 2 or 3",
             dimension);
   }
-  return CheckerboardTexture<Input>{get("tex1", 1.0), get("tex2", 0.0), uv_mapping(list)};
+  return board;
 }
 
 FloatTexture TextureBuilder::float_texture(const PbrtTexture& texture) {
   const ParameterList& list = texture.parameters;
   if (texture.type == "constant") return static_cast<float>(list.get_float("value", 1));
+  const auto roughness = [&] { return static_cast<float>(list.get_float("roughness", 0.5)); };
+  if (texture.type == "fbm") {
+    return FbmTexture{solid_mapping(context_, texture), octaves_of(list), roughness()};
+  }
+  if (texture.type == "wrinkled") {
+    return WrinkledTexture{solid_mapping(context_, texture), octaves_of(list), roughness()};
+  }
+  if (texture.type == "windy") return WindyTexture{solid_mapping(context_, texture)};
   return compound<FloatTexture, FloatInput>(texture, [&](std::string_view name, double otherwise) {
     return float_input(context_, list, name, otherwise);
   });
@@ -199,16 +248,24 @@ SpectrumTexture TextureBuilder::spectrum_texture(const PbrtTexture& texture, Col
         given ? distribution_of(context_, value, meaning, list, "value") : SpectralDistribution(1),
         SpectrumRole::kReflectance);
   }
+  if (texture.type == "marble") {
+    const auto number = [&](std::string_view name, double otherwise) {
+      return static_cast<float>(list.get_float(name, otherwise));
+    };
+    return MarbleTexture{solid_mapping(context_, texture), octaves_of(list),
+                         number("roughness", 0.5), number("scale", 1), number("variation", 0.2)};
+  }
   return compound<SpectrumTexture, SpectrumInput>(
       texture, [&](std::string_view name, double otherwise) {
         return spectrum_input(context_, list, name, otherwise, meaning);
       });
 }
 
-ImageMapTexture TextureBuilder::image_map(const ParameterList& list) {
+ImageMapTexture TextureBuilder::image_map(const PbrtTexture& described) {
+  const ParameterList& list = described.parameters;
   ImageMapTexture texture;
   texture.image = image(list);
-  texture.mapping = uv_mapping(list);
+  texture.mapping = texture_mapping(context_, described);
   texture.wrap = at_location(list.location_of("wrap"),
                              [&] { return image_wrap(list.get_string("wrap", "repeat")); });
   texture.scale = static_cast<float>(list.get_float("scale", 1));

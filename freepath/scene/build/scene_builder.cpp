@@ -94,6 +94,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
     check_places(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
   }
   scene.origin = origin_of(scene, extent);
+  scene.textures.set_origin(scene.origin);
   scene.shapes = shapes.shapes;
   SceneLightsDescription lights;
   lights.lights = build_lights(context);
