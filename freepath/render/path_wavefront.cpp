@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "freepath/base/random.h"
+#include "freepath/tracking/reference/stop_scope.h"
 
 namespace freepath {
 namespace {
@@ -67,6 +68,7 @@ PathWavefront::PathWavefront(const PathSetup& setup)
 }
 
 bool PathWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
+  const StopScope scope(stop);
   results_.assign(job.pixels * job.samples, PathSample{});
   layers_.begin(film, results_.size());
   window_ = film.window();
@@ -75,7 +77,7 @@ bool PathWavefront::trace(const PathJob& job, Film& film, const std::function<bo
   for (std::size_t i = 0; i < setup_.walkers.size(); ++i) {
     walker_ = &setup_.walkers[i];
     const int channel = all_channels ? Walker::kAllChannels : static_cast<int>(i);
-    if (!trace_channel(job, channel, stop)) return false;
+    if (!trace_channel(job, channel, stop) || scope.stopped()) return false;
   }
   for (std::size_t i = 0; i < results_.size(); ++i) {
     film.add(job.first_pixel + i / job.samples, results_[i], layers_[i]);
@@ -94,7 +96,7 @@ bool PathWavefront::trace_channel(const PathJob& job, int channel,
     rays_.resize(setup_.slots);
     while (active < setup_.slots && next < total) start_path(job, next++, active++, channel);
     if (active == 0) return true;
-    if (stop && stop()) return false;
+    if (StopScope::has_stopped() || (stop && stop())) return false;
     rays_.resize(active);
     bring_weights(active);
     walker_->free_paths(rays_, flights_, job_counts_.free_paths);

@@ -54,6 +54,24 @@ void expect_same(const PathWavefront::Counts& a, const PathWavefront::Counts& b)
   EXPECT_EQ(a.free_paths.real_collisions, b.free_paths.real_collisions);
 }
 
+// A step of a nanometre makes 10^10 steps in a flight: the wish to stop reaches into it.
+TEST(PathWavefront, IsStoppedWithinAFlight) {
+  Stage stage(Spectrum(0.5F));
+  WalkSettings settings;
+  settings.tracker = "ray-marching:step=1e-9";
+  settings.interpolation = Interpolation::kNearest;
+  stage.setup.walkers.clear();
+  stage.setup.walkers.emplace_back(stage.medium, settings);
+  PathWavefront wavefront(stage.setup);
+  for (const int allowed : {1, 2, 5}) {
+    Film film(kColumns, kRows);
+    int questions = 0;
+    EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return ++questions > allowed; }));
+    EXPECT_EQ(questions, allowed + 1);
+    for (int pixel = 0; pixel < kColumns * kRows; ++pixel) EXPECT_EQ(film.samples(pixel), 0U);
+  }
+}
+
 TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
   // One path for all channels, and one for each.
   for (const Spectrum& sigma_s : {Spectrum(0.5F), Spectrum(0.5F, 0.2F, 0.1F)}) {

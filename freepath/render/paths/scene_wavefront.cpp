@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include "freepath/tracking/reference/stop_scope.h"
 
 namespace freepath {
 namespace {
@@ -42,6 +43,7 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
 }
 
 bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
+  const StopScope scope(stop);
   results_.assign(job.pixels * job.samples * setup_.factory->paths_per_sample(), PathSample{});
   layers_.begin(film, results_.size());
   spectra_.assign(film.buckets().count > 0 ? results_.size() : 0, Channels());
@@ -54,7 +56,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
   while (true) {
     while (active_ < setup_.slots && next < total) start_path(job, next++, paths_[active_++]);
     if (active_ == 0) break;
-    if (stop && stop()) return false;
+    if (scope.stopped() || (stop && stop())) return false;
     fly();
     shadows_.trace(paths_, job_counts_.shadow_rays);
     emissions_.trace(paths_, job_counts_.free_paths);
@@ -67,6 +69,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
       paths_[slot] = std::move(paths_[--active_]);
     }
   }
+  if (scope.stopped()) return false;
   add_to_film(job, film);
   counts_.merge(job_counts_);
   return true;

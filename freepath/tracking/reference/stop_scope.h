@@ -1,0 +1,44 @@
+#pragma once
+/// @file A wish to stop that reaches into walks.
+
+#include <functional>
+
+namespace freepath {
+
+/// Lets the walks of this thread ask whether they are still wanted, as long as it lives: those
+/// whose single flights may take very long. Walks that have been told to stop return at once, and
+/// what they return means nothing.
+///
+/// It is no parameter of walks, so that kernels for lanes, whose flights are short, know nothing of
+/// it.
+class StopScope {
+ public:
+  /// @param stop asked now and then; once it is true the walks end. Empty: never.
+  explicit StopScope(const std::function<bool()>& stop) : stop_(stop), outer_(current_) {
+    current_ = this;
+  }
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+  ~StopScope() { current_ = outer_; }
+
+  /// Whether walks were told to stop.
+  bool stopped() const { return stopped_; }
+
+  /// Whether the walk at work was told to stop before; asks nobody.
+  static bool has_stopped() { return current_ != nullptr && current_->stopped_; }
+  /// Whether the walk at work has to stop.
+  static bool ask() {
+    if (current_ == nullptr || !current_->stop_) return false;
+    current_->stopped_ = current_->stopped_ || current_->stop_();
+    return current_->stopped_;
+  }
+
+ private:
+  const std::function<bool()>& stop_;
+  StopScope* const outer_;
+  bool stopped_ = false;
+
+  inline static thread_local StopScope* current_ = nullptr;
+};
+
+}  // namespace freepath
