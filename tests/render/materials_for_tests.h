@@ -72,6 +72,7 @@ class MaterialWorld {
     const SpectrumId color =
         add(RgbSpectrum::reflectance({0.8, 0.4, 0.2}, table_.space()), SpectrumRole::kReflectance);
     add("diffuse", DiffuseMaterial{color});
+    add("paper", DiffuseTransmissionMaterial{color, grey(0.3), 0.9F});
     add("smooth gold", ConductorMaterial{gold(), {}});
     add("rough gold", ConductorMaterial{gold(), {0.05F, 0.05F, true}});
     add("very rough gold", ConductorMaterial{gold(), {0.8F, 0.8F, false}});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "freepath/base/error.h"
 #include "freepath/render/materials/fresnel.h"
 #include "tests/render/materials_for_tests.h"
 #include "tests/statistics.h"
@@ -72,6 +73,39 @@ TEST(Furnace, WhiteDiffuseLosesNothing) {
   const Material white = DiffuseMaterial{world.grey(1)};
   world.update();
   expect_lossless(white, world.in_rgb(), 1);
+}
+
+TEST(Furnace, WhitePaperLosesNothing) {
+  MaterialWorld world;
+  const Material paper = DiffuseTransmissionMaterial{world.grey(0.35), world.grey(0.65)};
+  const Material scaled = DiffuseTransmissionMaterial{world.grey(0.8), world.grey(0.2), 0.5F};
+  world.update();
+  expect_lossless(paper, world.in_rgb(), 1);
+  for (const double cosine : {0.9, -0.4}) {
+    EXPECT_NEAR(energy(scaled, cosine, world.in_rgb(), 1, 100).mean(), 0.5, 1e-6);
+  }
+}
+
+// To either side the share that the material says, of uniform radiance.
+TEST(Furnace, PaperPartsLightBetweenItsSides) {
+  MaterialWorld world;
+  const Material paper = DiffuseTransmissionMaterial{world.grey(0.7), world.grey(0.1)};
+  world.update();
+  const SurfacePoint point = askew_point();
+  for (const double cosine : {0.8, -0.3}) {
+    const Vec3f travel = -on_surface(point, cosine, 0.7);
+    RandomStream random(5, 0, 0, 0);
+    RunningStatistics reflected, transmitted;
+    for (int i = 0; i < 20'000; ++i) {
+      const auto sample = paper.sample(point, travel, random, world.in_rgb());
+      ASSERT_TRUE(sample);
+      EXPECT_EQ(sample->transmitted, sample->direction.dot(point.normal) * cosine < 0);
+      reflected.add(sample->transmitted ? 0 : sample->weight[0]);
+      transmitted.add(sample->transmitted ? sample->weight[0] : 0);
+    }
+    EXPECT_TRUE(check_mean("reflected", reflected, 0.7, {.largest_relative_error = 0.01}));
+    EXPECT_TRUE(check_mean("transmitted", transmitted, 0.1, {.largest_relative_error = 0.03}));
+  }
 }
 
 TEST(Furnace, APerfectConductorLosesNothingWhereItIsSmooth) {
@@ -265,6 +299,54 @@ TEST(Mix, TakesTheSecondMaterialByItsAmount) {
     EXPECT_TRUE(check_mean("mix", found, 1 - amount));
     EXPECT_TRUE(check_mean("mix of mixes", found_nested, (1 - amount) * (1 - amount)));
     EXPECT_NEAR(mix.albedo(point, travel, world.in_rgb())[0], 1 - amount, 1e-6);
+  }
+}
+
+// An interface in a mix lets paths through.
+TEST(Mix, HasHolesWhereItTakesAnInterface) {
+  MaterialWorld world;
+  const auto white = std::make_shared<const Material>(DiffuseMaterial{world.grey(1)});
+  world.update();
+  const Material sieve = MixMaterial{white, nullptr, 0.3F};
+  EXPECT_TRUE(sieve.has_holes());
+  EXPECT_TRUE(sieve.transmits());
+  EXPECT_FALSE(sieve.is_specular());
+  EXPECT_FALSE(white->has_holes());
+  const Material nested = MixMaterial{std::make_shared<const Material>(sieve), white, 0.5F};
+  EXPECT_TRUE(nested.has_holes());
+  EXPECT_THROW(Material(MixMaterial{nullptr, nullptr}), Error);
+  RandomStream random(3, 0, 0, 0);
+  SurfacePoint point = askew_point();
+  const Vec3f travel = -on_surface(point, 0.6, 0.7);
+  RunningStatistics holes, nested_holes;
+  for (int i = 0; i < 20'000; ++i) {
+    point.position = {random.uniform(), random.uniform(), 3};
+    const bool hole = sieve.is_hole(point, travel, world.in_rgb());
+    holes.add(hole ? 1 : 0);
+    nested_holes.add(nested.is_hole(point, travel, world.in_rgb()) ? 1 : 0);
+    const auto sample = sieve.sample(point, travel, random, world.in_rgb());
+    ASSERT_TRUE(sample);
+    EXPECT_EQ(sample->transmitted, hole);
+  }
+  EXPECT_TRUE(check_mean("holes", holes, 0.3));
+  EXPECT_TRUE(check_mean("holes of a nest", nested_holes, 0.15));
+}
+
+// Without memory it would be 2^N.
+TEST(Mix, OfMixesIsLookedThroughOnce) {
+  MaterialWorld world;
+  auto last = std::make_shared<const Material>(DiffuseMaterial{world.grey(0.5)});
+  world.update();
+  const SurfacePoint point = askew_point();
+  const Vec3f travel = -on_surface(point, 0.6, 0.7);
+  for (int depth = 1; depth <= 60; ++depth) {
+    last = std::make_shared<const Material>(MixMaterial{last, last, 0.25F});
+    if (depth != 15 && depth != 60) continue;
+    uint64_t visited = 0;
+    EXPECT_NEAR(last->albedo(point, travel, world.in_rgb(), &visited)[0], 0.5, 1e-6);
+    EXPECT_EQ(visited, depth + 2U);  // the diffuse one twice
+    EXPECT_FALSE(last->is_specular());
+    EXPECT_FALSE(last->transmits());
   }
 }
 

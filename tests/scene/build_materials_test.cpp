@@ -174,6 +174,37 @@ TEST(BuildMaterials, MixesNameMaterialsBeforeAndAfterThem) {
   EXPECT_EQ(std::get<MixMaterial>(built.scene().materials[5].kind()).amount, FloatInput(0.5F));
 }
 
+TEST(BuildMaterials, MixesTakeInterfaces) {
+  const ParsedScene built(with_materials(R"(
+      MakeNamedMaterial "air" "string type" "interface"
+      MakeNamedMaterial "white" "string type" "diffuse" "rgb reflectance" [ 1 1 1 ]
+      MakeNamedMaterial "sieve" "string type" "mix" "string materials" [ "white" "air" ]
+        "float amount" .25
+      MakeNamedMaterial "nothing" "string type" "mix" "string materials" [ "air" "air" ])"));
+  // The standard material is the first.
+  ASSERT_EQ(built.materials().size(), 5U);
+  EXPECT_FALSE(built.materials()[1]);
+  EXPECT_FALSE(built.materials()[4]);
+  ASSERT_TRUE(built.materials()[3]);
+  EXPECT_TRUE(built.scene().materials[*built.materials()[3]].has_holes());
+  EXPECT_TRUE(built.warnings().empty());
+}
+
+TEST(BuildMaterials, PaperHasTheDefaultsOfPbrt) {
+  const ParsedScene built(with_materials(R"(
+      Material "diffusetransmission"
+      Material "diffusetransmission" "rgb reflectance" [ .5 .25 .125 ]
+        "rgb transmittance" [ .25 .5 .125 ] "float scale" .5
+      Texture "leaf" "spectrum" "constant" "rgb value" [ .2 .4 .1 ]
+      Material "diffusetransmission" "texture transmittance" "leaf")"));
+  expect_near(built.albedo(1), Vec3f(0.5F));
+  expect_near(built.albedo(2), Vec3f(0.375F, 0.375F, 0.125F), 1e-4F);
+  expect_near(built.albedo(3), Vec3f(0.45F, 0.65F, 0.35F), 5e-4F);
+  EXPECT_TRUE(built.warnings().empty());
+  EXPECT_EQ(material_error(R"("diffusetransmission" "float scale" -1)"),
+            "scene.pbrt:2:32: parameter 'scale' is -1; it must be at least 0");
+}
+
 TEST(BuildMaterials, RefusesMixesThatCannotBe) {
   EXPECT_EQ(build_error(with_materials(R"(
 MakeNamedMaterial "a" "string type" "mix" "string materials" [ "b" "b" ]
@@ -186,8 +217,8 @@ Material "mix" "string materials" [ "paint" "pain" ])")),
             "scene.pbrt:4:16: there is no material 'pain'; did you mean 'paint'?");
   EXPECT_EQ(build_error(with_materials(R"(
 MakeNamedMaterial "air" "string type" "interface"
-Material "mix" "string materials" [ "air" "air" ])")),
-            "scene.pbrt:4:16: material 'air' is an interface, which cannot be part of a mix");
+Material "mix" "string materials" [ "air" "paper" ])")),
+            "scene.pbrt:4:16: there is no material 'paper'");
   EXPECT_EQ(material_error(R"("mix" "string materials" [ "a" ])"),
             "scene.pbrt:2:16: a mix needs the names of two materials in a parameter \"string "
             "materials\", has 1");
@@ -219,8 +250,9 @@ TEST(BuildMaterials, UnknownMaterialsAreErrorsWithTheNearestName) {
             "scene.pbrt:2:1: there is no material of type 'difuse'; did you mean 'diffuse'?");
   EXPECT_EQ(material_error(R"("hair")"),
             "scene.pbrt:2:1: the material 'hair' is not supported; there are: coatedconductor, "
-            "coateddiffuse, conductor, dielectric, diffuse, interface, mix, thindielectric");
-  for (const std::string type : {"diffusetransmission", "measured", "subsurface"}) {
+            "coateddiffuse, conductor, dielectric, diffuse, diffusetransmission, interface, mix, "
+            "thindielectric");
+  for (const std::string type : {"measured", "subsurface"}) {
     EXPECT_NE(material_error("\"" + type + "\"").find("'" + type + "' is not supported"),
               std::string::npos);
   }

@@ -74,6 +74,19 @@ TEST(SceneMaterial, DiffuseReflectsItsPartOfTheSky) {
                   0.4 / std::numbers::pi * kToSun.z);
 }
 
+// Of a sky it reflects and lets through; of the sun, which shines on the other side, it lets
+// through.
+TEST(SceneMaterial, PaperScattersToBothSides) {
+  const std::string paper = R"(Material "diffusetransmission" "rgb reflectance" [ .5 .5 .5 ] )"
+                            R"("rgb transmittance" [ .25 .25 .25 ] "float scale" .8)";
+  expect_radiance("sky", plane_of(paper, kSky), 0.8 * 0.75, 1024);
+  expect_radiance("sun", plane_of(paper, kSun), 0.8 * 0.5 / std::numbers::pi * kToSun.z);
+  const std::string behind =
+      "LightSource \"distant\" \"rgb L\" [ 1 1 1 ] \"point3 from\" [ -.5 .3 -1 ] "
+      "\"point3 to\" [ 0 0 0 ]\n";
+  expect_radiance("sun behind", plane_of(paper, behind), 0.8 * 0.25 / std::numbers::pi * kToSun.z);
+}
+
 TEST(SceneMaterial, SmoothConductorReflectsByFresnel) {
   const auto metal = [](const std::string& parameters) {
     return plane_of("Material \"conductor\" " + parameters, kSky);
@@ -206,6 +219,29 @@ TEST(SceneMaterial, MixIsTheMeanOfItsParts) {
                                    R"("float amount" .3)",
                            kSky),
                   expected, 1024);
+}
+
+// A black sheet, nine tenths of which are holes, close above a grey ground: the ground is seen
+// through them, and lit through them, by lights that paths find and by those that only shadow rays
+// do.
+TEST(SceneMaterial, MixWithAnInterfaceIsASieve) {
+  const std::string sieve =
+      R"(MakeNamedMaterial "air" "string type" "interface" )"
+      R"(MakeNamedMaterial "black" "string type" "diffuse" "rgb reflectance" [ 0 0 0 ] )"
+      R"(MakeNamedMaterial "sieve" "string type" "mix" "string materials" [ "black" "air" ] )"
+      R"("float amount" .9 )";
+  const std::string ground =
+      R"(AttributeBegin Translate 0 0 -.1 Material "diffuse" "rgb reflectance" [ .5 .5 .5 ] )"
+      R"(Shape "bilinearmesh" "point3 P" [ -9 -9 0  9 -9 0  -9 9 0  9 9 0 ] AttributeEnd )";
+  const auto seen = [&](const std::string& light, const std::string& behind) {
+    std::string scene = plane_of(sieve + behind + R"(NamedMaterial "sieve")", light);
+    // Holes are places, of which a point of view has few.
+    const std::string narrow = "-1e-4 1e-4 -1e-4 1e-4";
+    return scene.replace(scene.find(narrow), narrow.size(), "-.4 .4 -.4 .4");
+  };
+  expect_radiance("sky", seen(kSky, ground), 0.9 * 0.5 * 0.9, 256);
+  expect_radiance("sun", seen(kSun, ground), 0.9 * 0.9 * 0.5 / std::numbers::pi * kToSun.z, 512);
+  expect_radiance("light", seen("", kGround), 0.9, 256);
 }
 
 TEST(SceneMaterial, InterfaceIsNotSeen) {

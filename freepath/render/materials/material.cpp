@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <type_traits>
+#include <unordered_map>
 
 #include "freepath/base/error.h"
 #include "freepath/render/materials/surface_frame.h"
@@ -38,9 +39,30 @@ constexpr bool kIsMix = std::is_same_v<Kind, MixMaterial>;
 
 }  // namespace
 
+Material::Material(Kind kind) : kind_(std::move(kind)) {
+  check();
+  if (const auto* const mix = std::get_if<MixMaterial>(&kind_)) {
+    is_specular_ = true;
+    for (const Material* const part : {mix->first.get(), mix->second.get()}) {
+      is_specular_ = is_specular_ && (part == nullptr || part->is_specular());
+      transmits_ = transmits_ || part == nullptr || part->transmits();
+      has_holes_ = has_holes_ || part == nullptr || part->has_holes();
+    }
+    return;
+  }
+  std::visit(
+      [this]<class T>(const T& kind) {
+        if constexpr (!kIsMix<T>) {
+          is_specular_ = kind.is_specular();
+          transmits_ = kind.transmits();
+        }
+      },
+      kind_);
+}
+
 void Material::check() const {
   if (const auto* const mix = std::get_if<MixMaterial>(&kind_)) {
-    if (!mix->first || !mix->second) fail("a mix needs two materials");
+    if (!mix->first && !mix->second) fail("a mix needs a material");
   } else if (const auto* const diffuse = std::get_if<CoatedDiffuseMaterial>(&kind_)) {
     check_coating(diffuse->coating);
   } else if (const auto* const conductor = std::get_if<CoatedConductorMaterial>(&kind_)) {
@@ -48,16 +70,17 @@ void Material::check() const {
   }
 }
 
-const Material& Material::resolved(const SurfacePoint& point, const Vec3f& travel,
+const Material* Material::resolved(const SurfacePoint& point, const Vec3f& travel,
                                    const SurfaceContext& context) const {
   const Material* material = this;
-  for (uint32_t depth = 0;; ++depth) {
+  for (uint32_t depth = 0; material != nullptr; ++depth) {
     const auto* const mix = std::get_if<MixMaterial>(&material->kind_);
-    if (mix == nullptr) return *material;
+    if (mix == nullptr) break;
     const float amount = context.textures.evaluate(mix->amount, point);
     const bool first = hashed_uniform(point, travel, depth) >= amount;
     material = first ? mix->first.get() : mix->second.get();
   }
+  return material;
 }
 
 std::optional<MaterialSample> Material::sample(const SurfacePoint& point, const Vec3f& travel,
@@ -66,6 +89,8 @@ std::optional<MaterialSample> Material::sample(const SurfacePoint& point, const 
   const SurfaceFrame frame(point, travel);
   const Vec3f out = frame.to_local(-travel);
   if (!frame.on_side(out, -travel)) return std::nullopt;
+  const Material* const chosen = resolved(point, travel, context);
+  if (chosen == nullptr) return MaterialSample{travel, Channels(1), 0, true, true, false};
   const std::optional<LobeSample> drawn = std::visit(
       [&]<class T>(const T& kind) -> std::optional<LobeSample> {
         if constexpr (kIsMix<T>) {
@@ -74,7 +99,7 @@ std::optional<MaterialSample> Material::sample(const SurfacePoint& point, const 
           return kind.sample(out, random, point, context);
         }
       },
-      resolved(point, travel, context).kind_);
+      chosen->kind_);
   if (!drawn) return std::nullopt;
   const Vec3f next = frame.to_world(drawn->direction);
   if (!frame.on_side(drawn->direction, next)) return std::nullopt;
@@ -92,6 +117,8 @@ MaterialValue Material::evaluate(const SurfacePoint& point, const Vec3f& travel,
   const Vec3f out = frame.to_local(-travel);
   const Vec3f in = frame.to_local(next);
   if (!frame.on_side(out, -travel) || !frame.on_side(in, next)) return {};
+  const Material* const chosen = resolved(point, travel, context);
+  if (chosen == nullptr) return {};
   return std::visit(
       [&]<class T>(const T& kind) -> MaterialValue {
         if constexpr (kIsMix<T>) {
@@ -100,47 +127,60 @@ MaterialValue Material::evaluate(const SurfacePoint& point, const Vec3f& travel,
           return kind.evaluate(out, in, random, point, context);
         }
       },
-      resolved(point, travel, context).kind_);
+      chosen->kind_);
 }
 
-bool Material::is_specular() const {
-  return std::visit(
-      []<class T>(const T& kind) {
-        if constexpr (kIsMix<T>) {
-          return kind.first->is_specular() && kind.second->is_specular();
-        } else {
-          return kind.is_specular();
-        }
-      },
-      kind_);
-}
+namespace {
 
-bool Material::transmits() const {
-  return std::visit(
-      []<class T>(const T& kind) {
-        if constexpr (kIsMix<T>) {
-          return kind.first->transmits() || kind.second->transmits();
-        } else {
-          return kind.transmits();
-        }
-      },
-      kind_);
-}
+/// Albedos at a point, of materials that are parts of others found once.
+class AlbedoFinder {
+ public:
+  AlbedoFinder(const SurfacePoint& point, const Vec3f& travel, const SurfaceContext& context)
+      : point_(point), travel_(travel), context_(context) {}
+
+  Channels find(const Material* material) {
+    if (material == nullptr) return Channels(1);  // what passes is not lost
+    const auto* const mix = std::get_if<MixMaterial>(&material->kind());
+    if (mix == nullptr) {
+      ++visited_;
+      const Vec3f out = SurfaceFrame(point_, travel_).to_local(-travel_);
+      return std::visit(
+          [&]<class T>(const T& kind) -> Channels {
+            if constexpr (kIsMix<T>) {
+              return {};
+            } else {
+              return kind.albedo(out, point_, context_);
+            }
+          },
+          material->kind());
+    }
+    const auto known = mixes_.find(material);
+    if (known != mixes_.end()) return known->second;
+    ++visited_;
+    const float amount = std::clamp(context_.textures.evaluate(mix->amount, point_), 0.0F, 1.0F);
+    const Channels mean =
+        find(mix->first.get()) * (1.0F - amount) + find(mix->second.get()) * amount;
+    mixes_.emplace(material, mean);
+    return mean;
+  }
+  uint64_t visited() const { return visited_; }
+
+ private:
+  const SurfacePoint& point_;
+  const Vec3f& travel_;
+  const SurfaceContext& context_;
+  std::unordered_map<const Material*, Channels> mixes_;
+  uint64_t visited_ = 0;
+};
+
+}  // namespace
 
 Channels Material::albedo(const SurfacePoint& point, const Vec3f& travel,
-                          const SurfaceContext& context) const {
-  return std::visit(
-      [&]<class T>(const T& kind) {
-        if constexpr (kIsMix<T>) {
-          const float amount =
-              std::clamp(context.textures.evaluate(kind.amount, point), 0.0F, 1.0F);
-          return kind.first->albedo(point, travel, context) * (1.0F - amount) +
-                 kind.second->albedo(point, travel, context) * amount;
-        } else {
-          return kind.albedo(SurfaceFrame(point, travel).to_local(-travel), point, context);
-        }
-      },
-      kind_);
+                          const SurfaceContext& context, uint64_t* visited) const {
+  AlbedoFinder finder(point, travel, context);
+  const Channels albedo = finder.find(this);
+  if (visited != nullptr) *visited += finder.visited();
+  return albedo;
 }
 
 }  // namespace freepath

@@ -1,6 +1,7 @@
 #pragma once
 /// @file How a surface scatters light.
 
+#include <cstdint>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -40,12 +41,12 @@ struct MaterialSample {
 /// techniques. It is the same in sample() and evaluate(), hence those weights sum to 1.
 class Material {
  public:
-  using Kind =
-      std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
-                   CoatedDiffuseMaterial, CoatedConductorMaterial, MixMaterial>;
+  using Kind = std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial,
+                            DielectricMaterial, ThinDielectricMaterial, CoatedDiffuseMaterial,
+                            CoatedConductorMaterial, MixMaterial>;
 
-  /// @throws Error if a mix lacks a material, or a coating has no walks or interactions
-  Material(Kind kind) : kind_(std::move(kind)) { check(); }
+  /// @throws Error if a mix has no material at all, or a coating no walks or interactions
+  Material(Kind kind);
   /// Of one of the kinds.
   template <class T>
   requires std::is_constructible_v<Kind, T> Material(T kind) : Material(Kind(std::move(kind))) {}
@@ -61,26 +62,38 @@ class Material {
                          RandomStream& random, const SurfaceContext& context) const;
 
   /// Whether evaluate() is 0 everywhere.
-  bool is_specular() const;
+  bool is_specular() const { return is_specular_; }
   /// Whether any path goes on to the other side.
-  bool transmits() const;
+  bool transmits() const { return transmits_; }
+  /// Whether there is an interface among the parts of a mix.
+  bool has_holes() const { return has_holes_; }
+  /// Whether a path goes on at a point as if there were no surface. sample() and evaluate() are for
+  /// all others.
+  bool is_hole(const SurfacePoint& point, const Vec3f& travel,
+               const SurfaceContext& context) const {
+    return has_holes_ && resolved(point, travel, context) == nullptr;
+  }
 
   /// The share of light that is scattered, for pictures of it: exact for diffuse, smooth and
   /// thin ones, else an approximation that leaves roughness and the medium of a coating out. The
   /// radiance scale of refraction is not in it.
-  Channels albedo(const SurfacePoint& point, const Vec3f& travel,
-                  const SurfaceContext& context) const;
+  ///
+  /// Parts of a mix that are parts of others, too, are looked at once, however deep mixes nest.
+  /// @param visited if given, how many materials were looked at is added to it
+  Channels albedo(const SurfacePoint& point, const Vec3f& travel, const SurfaceContext& context,
+                  uint64_t* visited = nullptr) const;
 
   const Kind& kind() const { return kind_; }
 
  private:
   void check() const;
-  /// The one that a mix chooses, itself for others: by a hash of place and direction, so that
-  /// sample() and evaluate() at a hit agree.
-  const Material& resolved(const SurfacePoint& point, const Vec3f& travel,
+  /// The one that a mix chooses, itself for others, null for an interface: by a hash of place and
+  /// direction, so that sample() and evaluate() at a hit agree.
+  const Material* resolved(const SurfacePoint& point, const Vec3f& travel,
                            const SurfaceContext& context) const;
 
   Kind kind_;
+  bool is_specular_ = false, transmits_ = false, has_holes_ = false;
 };
 
 }  // namespace freepath

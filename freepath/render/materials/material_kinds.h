@@ -44,6 +44,21 @@ struct DiffuseMaterial {
   Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
 };
 
+/// `diffusetransmission`: the same radiance to all directions on either side, as paper and leaves
+/// do. Where both parts together are above 1 it is brighter than its light, as in pbrt-v4.
+struct DiffuseTransmissionMaterial {
+  SpectrumInput reflectance, transmittance;
+  float scale = 1;  ///< Of both.
+
+  std::optional<LobeSample> sample(const Vec3f& out, RandomStream& random,
+                                   const SurfacePoint& point, const SurfaceContext& context) const;
+  MaterialValue evaluate(const Vec3f& out, const Vec3f& in, RandomStream& random,
+                         const SurfacePoint& point, const SurfaceContext& context) const;
+  static bool is_specular() { return false; }
+  static bool transmits() { return true; }
+  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+};
+
 /// The refractive index eta + i k of a metal.
 struct ComplexIndex {
   SpectrumInput eta, k;
@@ -137,7 +152,8 @@ struct CoatedConductorMaterial {
   Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
 };
 
-/// `mix`: at each hit one of two materials, the second with the probability `amount`.
+/// `mix`: at each hit one of two materials, the second with the probability `amount`. Null is an
+/// interface, where paths go on as if there were no surface.
 struct MixMaterial {
   std::shared_ptr<const Material> first, second;
   FloatInput amount = 0.5F;

@@ -108,6 +108,13 @@ void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
   go_on(path, departure.origin, path.direction);
 }
 
+bool SceneWavefront::is_hole(const ScenePath& path, const SurfaceHit& hit,
+                             const Material& material) const {
+  if (!material.has_holes()) return false;
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  return material.is_hole(hit.point, path.direction, context);
+}
+
 void SceneWavefront::meet_surface(std::size_t slot) {
   ScenePath& path = paths_[slot];
   const SurfaceHit hit = choose_surface(path);
@@ -123,7 +130,7 @@ void SceneWavefront::meet_surface(std::size_t slot) {
     const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
     (in_rgb ? path.rgb : path.radiance) += light_throughput(path, in_rgb) * light.radiance * share;
   }
-  if (!shape.material) {
+  if (!shape.material || is_hole(path, hit, scene_.materials[*shape.material])) {
     cross_boundary(path, hit);
     return;
   }

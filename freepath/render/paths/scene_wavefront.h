@@ -81,6 +81,8 @@ class SceneWavefront {
   Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction) const;
   void set_media(ScenePath& path, const MediaSet& media) const;
   ShadowEnd shadow_end(const LightDraw& light) const;
+  /// Whether a path goes on at a surface as if there were none.
+  bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
   void scatter_in_medium(std::size_t slot, float t, std::size_t component);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {

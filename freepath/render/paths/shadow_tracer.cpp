@@ -1,5 +1,6 @@
 #include "freepath/render/paths/shadow_tracer.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "freepath/base/random.h"
@@ -21,6 +22,13 @@ uint32_t stream_of(uint32_t flight, uint32_t segment) {
 
 }  // namespace
 
+ShadowTracer::ShadowTracer(const PathScene& scene, const ColorFactory& factory, std::size_t slots)
+    : scene_(scene),
+      factory_(factory),
+      has_holes_(std::any_of(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& material) { return material.has_holes(); })),
+      batches_(slots, false) {}
+
 void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media,
                                float begin, float end) {
   if (!(begin < end)) return;
@@ -36,8 +44,61 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const Medi
   batch.rays.stream[slot] = stream_of(path.flights, shadow.segments++);
 }
 
+void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) {
+  const Surfaces& surfaces = *scene_.surfaces;
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  float begin = 0;
+  MediaSet media = shadow.media;
+  Vec3f origin = shadow.origin;
+  const auto is_end = [&](uint32_t shape, uint32_t primitive) {
+    const auto& target = shadow.end.target;
+    return target && target->shape == shape && target->primitive == primitive;
+  };
+  // Whether a ray goes on at a surface, which it crosses then.
+  const auto passes = [&](const SurfaceHit& hit) {
+    const PathShape& shape = scene_.shapes[hit.point.shape];
+    if (shape.material &&
+        !scene_.materials[*shape.material].is_hole(hit.point, shadow.direction, context)) {
+      return false;
+    }
+    media.cross(shape.inside, shape.outside, !hit.from_inside);
+    return true;
+  };
+  while (begin < shadow.end.distance) {
+    const auto hit =
+        surfaces.intersect(origin, shadow.direction, 0, shadow.end.distance - begin);
+    if (!hit) break;
+    ties_.clear();
+    if (hit->is_tied) surfaces.find_ties(origin, shadow.direction, *hit, ties_);
+    bool ends = is_end(hit->point.shape, hit->point.primitive);
+    const Vec3f beyond = surfaces.offset_ray_origin(hit->point, shadow.direction);
+    const float end = begin + hit->t;
+    add_segment(shadow, path, media, begin, end);
+    bool is_free = ends || passes(*hit);
+    for (const TiedSurface& tied : ties_) {
+      // What a ray from beyond meets may wait.
+      if (!surfaces.is_beyond(tied.place, beyond, shadow.direction)) continue;
+      const SurfaceHit there = surfaces.describe(origin, shadow.direction, tied);
+      ends = ends || is_end(there.point.shape, there.point.primitive);
+      is_free = is_free && (ends || passes(there));
+    }
+    if (ends) return;
+    if (!is_free) {
+      shadow.radiance = Channels();
+      return;
+    }
+    begin = end;
+    origin = beyond;
+  }
+  add_segment(shadow, path, media, begin, shadow.end.distance);
+}
+
 void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
   shadow.first_segment = static_cast<uint32_t>(segments_.size());
+  if (has_holes_ && scene_.surfaces) {
+    trace_porous_surfaces(shadow, path);
+    return;
+  }
   if (!scene_.surfaces) {
     add_segment(shadow, path, shadow.media, 0, shadow.end.distance);
     return;

@@ -17,8 +17,7 @@ namespace freepath {
 /// end, then through the media between them.
 class ShadowTracer {
  public:
-  ShadowTracer(const PathScene& scene, const ColorFactory& factory, std::size_t slots)
-      : scene_(scene), factory_(factory), batches_(slots, false) {}
+  ShadowTracer(const PathScene& scene, const ColorFactory& factory, std::size_t slots);
 
   /// Adds a ray.
   /// @param owner of PathState, whose radiance it is to add to
@@ -46,16 +45,20 @@ class ShadowTracer {
 
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
   void trace_surfaces(Shadow& shadow, const ScenePath& path);
+  /// The same where surfaces have holes: place by place.
+  void trace_porous_surfaces(Shadow& shadow, const ScenePath& path);
   void add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media, float begin,
                    float end);
 
   const PathScene& scene_;
   const ColorFactory& factory_;
+  bool has_holes_ = false;          // whether a material of the scene has
   std::vector<Channels> segments_;  // transmittances, ray after ray, each in the order of its way
   std::vector<uint32_t> owners_;    // of the segments
   WalkBatches batches_;
   FlightStream flights_;
   std::vector<Shadow> shadows_;
+  std::vector<TiedSurface> ties_;
 };
 
 }  // namespace freepath

@@ -18,11 +18,11 @@
 namespace freepath {
 namespace {
 
-constexpr std::array<std::string_view, 8> kMaterials = {
-    "coatedconductor", "coateddiffuse", "conductor", "dielectric",
-    "diffuse",         "interface",     "mix",       "thindielectric"};
-constexpr std::array<std::string_view, 4> kUnsupportedMaterials = {"diffusetransmission", "hair",
-                                                                   "measured", "subsurface"};
+constexpr std::array<std::string_view, 9> kMaterials = {
+    "coatedconductor",     "coateddiffuse", "conductor", "dielectric",    "diffuse",
+    "diffusetransmission", "interface",     "mix",       "thindielectric"};
+constexpr std::array<std::string_view, 3> kUnsupportedMaterials = {"hair", "measured",
+                                                                   "subsurface"};
 
 /// Mixes of mixes are looked through at each hit, and destroyed by recursion.
 constexpr int kDeepestMix = 64;
@@ -34,6 +34,13 @@ class MaterialParameters {
       : context_(context), list_(list) {}
 
   Material diffuse() const { return DiffuseMaterial{reflectance()}; }
+  Material diffuse_transmission() const {
+    const auto part = [&](std::string_view name) {
+      return spectrum_input(context_, list_, name, 0.25, ColorMeaning::kReflectance);
+    };
+    return DiffuseTransmissionMaterial{part("reflectance"), part("transmittance"),
+                                       not_negative("scale", 1)};
+  }
   Material conductor() const {
     return ConductorMaterial{metal_index("eta", "k"), roughness("", remap())};
   }
@@ -62,6 +69,7 @@ class MaterialParameters {
   ConductorIndex metal_index(std::string_view eta, std::string_view k) const;
   Coating coating(const std::string& prefix) const;
   int positive(std::string_view name, int otherwise) const;
+  float not_negative(std::string_view name, double otherwise) const;
 
   BuildContext& context_;
   const ParameterList& list_;
@@ -124,6 +132,15 @@ int MaterialParameters::positive(std::string_view name, int otherwise) const {
             value);
   }
   return value;
+}
+
+float MaterialParameters::not_negative(std::string_view name, double otherwise) const {
+  const double value = list_.get_float(name, otherwise);
+  if (value < 0) {
+    fail_at(list_.location_of(name), "parameter {} is {}; it must be at least 0", in_quotes(name),
+            value);
+  }
+  return static_cast<float>(value);
 }
 
 /// Builds materials, those that a mix names before it.
@@ -190,6 +207,7 @@ MaterialBuilder::Built MaterialBuilder::build(const PbrtMaterial& material, int 
   };
   if (type.empty() || type == "none" || type == "interface") return {};
   if (type == "diffuse") return with_surface(parameters.diffuse());
+  if (type == "diffusetransmission") return with_surface(parameters.diffuse_transmission());
   if (type == "conductor") return with_surface(parameters.conductor());
   if (type == "dielectric") return with_surface(parameters.dielectric());
   if (type == "thindielectric") return with_surface(parameters.thin_dielectric());
@@ -218,6 +236,7 @@ MaterialBuilder::Built MaterialBuilder::mix(const PbrtMaterial& material, int de
   if (height > kDeepestMix) {
     fail_at(material.location, "this mix is part of a nest of more than {} mixes", kDeepestMix);
   }
+  if (!made.first && !made.second) return {nullptr, height};
   return {std::make_shared<const Material>(std::move(made)), height};
 }
 
@@ -230,12 +249,7 @@ const MaterialBuilder::Built& MaterialBuilder::part_of_mix(const ParameterList& 
     for (const auto& entry : names_) known.emplace_back(entry.first);
     fail_at(location, "there is no material {}{}", in_quotes(name), did_you_mean(name, known));
   }
-  const Built& part = built(found->second, depth);
-  if (!part.material) {
-    fail_at(location, "material {} is an interface, which cannot be part of a mix",
-            in_quotes(name));
-  }
-  return part;
+  return built(found->second, depth);
 }
 
 }  // namespace
