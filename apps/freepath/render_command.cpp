@@ -102,7 +102,8 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
 
 void run(const CLI::App& command, const RenderOptions& options) {
   if (is_scene(options.picture)) return run_scene(command, options);
-  if (options.outputs.empty()) fail("-o, --output is required: the picture to write, .exr or .png");
+  if (options.outputs.empty())
+    fail("-o, --output is required: the picture to write, .exr, .png, .pfm or .qoi");
   check_volume_options(command, options.picture);
   // All that can be wrong with the options is said before the first second of work.
   const std::vector<PictureFiles> pictures =
@@ -128,7 +129,9 @@ void run(const CLI::App& command, const RenderOptions& options) {
 }
 
 void add_output_options(CLI::App& command, RenderOptions& o) {
-  command.add_option("-o,--output", o.outputs, "Picture to write, .exr or .png; may be repeated")
+  command
+      .add_option("-o,--output", o.outputs,
+                  "Picture to write, .exr, .png, .pfm or .qoi; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group("Picture");

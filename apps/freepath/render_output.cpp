@@ -17,6 +17,7 @@
 #include "freepath/base/version.h"
 #include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
+#include "freepath/io/image_plain.h"
 
 namespace freepath::program {
 namespace {
@@ -151,7 +152,9 @@ void write_outputs(const std::vector<std::string>& files, const OutputPlan& plan
   if (plan.display != nullptr) plan.display->show(image);
   add_metadata(image, result, report);
   for (const std::string& file : files) {
-    if (image_format(file) == ImageFormat::kPng) {
+    if (is_plain_image(file)) {
+      write_plain_image(file, image, plan.exposure);
+    } else if (image_format(file) == ImageFormat::kPng) {
       write_png(file, image, plan.exposure);
     } else {
       write_exr(file, image);

@@ -12,6 +12,7 @@
 #include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
 #include "freepath/io/image_codec.h"
+#include "freepath/io/image_plain.h"
 
 namespace freepath {
 
@@ -56,11 +57,12 @@ ImageFormat image_format(const std::string& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".exr") return ImageFormat::kExr;
   if (extension == ".png") return ImageFormat::kPng;
-  fail("{}: can't write images with the extension \"{}\"; use .exr or .png", path, extension);
+  fail("{}: can't write images with the extension \"{}\"; use .exr, .png, .pfm or .qoi", path,
+       extension);
 }
 
 void check_writable(const std::string& path) {
-  image_format(path);
+  if (!is_plain_image(path)) image_format(path);
   check_file_place(path);
   image_codec();
 }
@@ -84,19 +86,7 @@ void write_exr(const std::string& path, const Image& image, ExrPrecision precisi
 
 std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::string& name) {
   check_consistent(name, image);
-  if (!std::isfinite(exposure)) fail("{}: the exposure must be a finite number of stops", name);
-  const std::array<int, 3> colour = colour_channels(image, name);
-  const auto scale = static_cast<float>(std::exp2(exposure));
-  std::vector<uint8_t> bytes;
-  bytes.reserve(image.pixel_count() * 3);
-  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-    for (const int channel : colour) {
-      const float value = image.values[pixel * image.channels.size() + channel] * scale;
-      // The order of the arguments makes a NaN black.
-      const float srgb = srgb_from_linear(std::min(1.0F, std::max(0.0F, value)));
-      bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * srgb)));
-    }
-  }
+  const std::vector<uint8_t> bytes = srgb_pixels(image, exposure, name);
   std::vector<uint8_t> encoded;
   const std::string reason =
       image_codec().encode_png(image.width, image.height, bytes.data(), encoded);

@@ -153,8 +153,8 @@ TEST_F(ImageTest, WritingThroughALinkKeepsTheLink) {
 
 TEST_F(ImageTest, TargetsThatCannotBeWrittenAreNamedBeforeRendering) {
   expect_message([&] { check_writable(path("no/a.exr")); }, "does not exist");
-  expect_message([&] { check_writable(path("a.gif")); }, "use .exr or .png");
-  expect_message([&] { check_writable(path("a")); }, "use .exr or .png");
+  expect_message([&] { check_writable(path("a.gif")); }, "use .exr, .png, .pfm or .qoi");
+  expect_message([&] { check_writable(path("a")); }, "use .exr, .png, .pfm or .qoi");
   fs::create_directory(path("folder.exr"));
   expect_message([&] { check_writable(path("folder.exr")); }, "not a file");
   write_exr(path("a.exr"), numbered_image({"Y"}));
