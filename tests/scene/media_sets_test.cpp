@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "freepath/base/random.h"
@@ -157,6 +159,13 @@ std::string turned(double degrees) {
   return degrees == 0 ? "" : fmt::format("Rotate {} 1 2 3\n", degrees);
 }
 
+/// A scene of one piece after the other.
+std::string joined(std::initializer_list<std::string> pieces) {
+  std::string text;
+  for (const std::string& piece : pieces) text += piece;
+  return text;
+}
+
 /// Sums over scenes, so that a small common error shows.
 struct Pool {
   double difference = 0;
@@ -188,11 +197,11 @@ TEST(MediaSets, RandomBodiesAbsorbAsTheirUnion) {
     const double expected = std::exp(-arrangement.depth(origin, direction, 0, 1e9));
     arrangement.shuffle();
     const double turn = seed % 2 == 0 ? 0 : 37;
-    pool.add(
-        render_text(kUnlimited + film(8) + look(origin, origin + direction) + turned(-turn) + kRay +
-                        kSurround + arrangement.media() + turned(turn) + arrangement.bodies(),
-                    {.samples = 192, .seed = seed + 1}),
-        expected);
+    pool.add(render_text(
+                 joined({kUnlimited, film(8), look(origin, origin + direction), turned(-turn), kRay,
+                         kSurround, arrangement.media(), turned(turn), arrangement.bodies()}),
+                 {.samples = 192, .seed = seed + 1}),
+             expected);
   }
   pool.check();
 }
@@ -237,13 +246,13 @@ TEST(MediaSets, LayersFromBothSides) {
                                          medium_box("m0", Vec3d(-1, -1, 2), Vec3d(1, 1, 3))};
       if (reversed) std::reverse(layers.begin(), layers.end());
       const double expected = std::exp(-1.4);
-      expect_mean("layers",
-                  render_text(kUnlimited + film() + look({0.1, 0.2, side}, {0.15, 0.1, 0}) + kRay +
-                                  kSurround + absorber("m0", 0.5) + absorber("m1", 0.4) +
-                                  layers[0] + layers[1] + layers[2],
-                              {.samples = 512}),
-                  {expected, expected, expected},
-                  {.absolute = 3e-3, .largest_relative_error = 0.005});
+      expect_mean(
+          "layers",
+          render_text(
+              joined({kUnlimited, film(), look({0.1, 0.2, side}, {0.15, 0.1, 0}), kRay, kSurround,
+                      absorber("m0", 0.5), absorber("m1", 0.4), layers[0], layers[1], layers[2]}),
+              {.samples = 512}),
+          {expected, expected, expected}, {.absolute = 3e-3, .largest_relative_error = 0.005});
     }
   }
 }
@@ -251,8 +260,8 @@ TEST(MediaSets, LayersFromBothSides) {
 // What overlaps adds up: absorption, emission and scattering alike, in all channels.
 TEST(MediaSets, MediaWithOneBoundaryAreTheirSum) {
   const auto scene = [](const std::string& tracker, const std::string& world) {
-    return "Integrator \"volpath\" \"integer maxdepth\" 12 \"string tracker\" \"" + tracker +
-           "\"\n" + film(8) + look({2, 1, -3}, {0, 0, 0}) +
+    return R"(Integrator "volpath" "integer maxdepth" 12 "string tracker" ")" + tracker + "\"\n" +
+           film(8) + look({2, 1, -3}, {0, 0, 0}) +
            "Camera \"perspective\" \"float fov\" 25\nWorldBegin\n"
            "LightSource \"infinite\" \"rgb L\" [ .3 .3 .3 ]\n"
            "LightSource \"distant\" \"rgb L\" [ 2 2 2 ] \"point3 from\" [ 1 2 -1 ]\n" +
@@ -331,9 +340,9 @@ TEST(MediaSets, FloorAtTheBottomOfTheFog) {
   for (const double turn : {0.0, 23.0}) {
     for (const Vec3d& eye : {Vec3d(0.1, 7, 0.2), Vec3d(0.4, 3, -6)}) {
       const auto scene = [&](const std::string& world) {
-        return kUnlimited + film(8) + look(eye, Vec3d(0.05, 0, 0.02)) + turned(-turn) +
-               "Camera \"perspective\" \"float fov\" 8\nWorldBegin\n" + kSurround + turned(turn) +
-               world;
+        return joined({kUnlimited, film(8), look(eye, Vec3d(0.05, 0, 0.02)), turned(-turn),
+                       "Camera \"perspective\" \"float fov\" 8\nWorldBegin\n", kSurround,
+                       turned(turn), world});
       };
       const Picture below = render_text(scene(absorber("m", 0.1) + floor(0) + fog));
       const Picture above = render_text(scene(absorber("m", 0.1) + fog + floor(0)));
@@ -377,9 +386,9 @@ TEST(MediaSets, RandomBodiesInAFurnace) {
     for (const ColorMode mode : kColorModes) {
       expect_mean(
           "furnace",
-          render_text(kUnlimited + film(8) + look(direction * -8, Vec3d(0)) + turned(-turn) +
-                          "Camera \"perspective\" \"float fov\" 20\nWorldBegin\n" + kSurround +
-                          media + turned(turn) + arrangement.bodies(),
+          render_text(joined({kUnlimited, film(8), look(direction * -8, Vec3d(0)), turned(-turn),
+                              "Camera \"perspective\" \"float fov\" 20\nWorldBegin\n", kSurround,
+                              media, turned(turn), arrangement.bodies()}),
                       {.mode = mode, .samples = 128}),
           {1, 1, 1}, {.absolute = 3e-5, .largest_relative_error = 0.01});
     }

@@ -2,11 +2,11 @@
 /// @file The surfaces of a scene, to be met by rays.
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "freepath/base/vector.h"
@@ -26,7 +26,11 @@ struct SurfaceKey {
   uint32_t primitive = 0;           ///< Of the geometry.
   uint32_t root = 0;                ///< Which of the points where a line meets the primitive.
 
-  friend auto operator<=>(const SurfaceKey&, const SurfaceKey&) = default;
+  friend bool operator==(const SurfaceKey&, const SurfaceKey&) = default;
+  friend bool operator<(const SurfaceKey& a, const SurfaceKey& b) {
+    return std::tie(a.instance, a.geometry, a.primitive, a.root) <
+           std::tie(b.instance, b.geometry, b.primitive, b.root);
+  }
 };
 
 /// A place on a ray where a surface is met, in double precision.
