@@ -32,7 +32,9 @@ class Pcg {
     return shifted >> turn | shifted << (-turn & 31);
   }
   float uniform() { return uniform_from_bits(bits()); }
-  float exponential() { return -std::log(open_uniform_from_bits(bits())); }
+  float exponential() {
+    return -std::log((static_cast<float>(static_cast<int32_t>(bits() >> 1)) + 0.5F) * 0x1p-31F);
+  }
 
  private:
   uint64_t state_ = 0;

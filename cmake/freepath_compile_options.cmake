@@ -1,8 +1,8 @@
 # What every target of the project is compiled with. Linked as freepath_options.
 add_library(freepath_options INTERFACE)
 target_compile_features(freepath_options INTERFACE cxx_std_20)
-# No contraction by the compiler's choice: a fused multiply-add is written as one (MulAdd), so that
-# AVX2 and AVX-512 round alike and a picture does not depend on the machine that made it.
+# No contraction by the compiler's choice: SSE4 and one lane can't fuse a multiplication and an addition,
+# and a picture does not depend on the machine that made it.
 target_compile_options(freepath_options INTERFACE -ffp-contract=off -fno-math-errno -Wall -Wextra
                        $<$<BOOL:${FREEPATH_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

@@ -43,6 +43,7 @@ HWY_INLINE MaskF mask_of(uint32_t bits) {
   return hn::LoadMaskBits(kFloat, bytes);
 }
 
+HWY_INLINE MaskF all_lanes() { return hn::Eq(hn::Zero(kFloat), hn::Zero(kFloat)); }
 HWY_INLINE MaskF no_lanes() { return hn::MaskFromVec(hn::Zero(kFloat)); }
 
 HWY_INLINE MaskI int_mask(MaskF mask) { return hn::RebindMask(kInt, mask); }
@@ -128,6 +129,10 @@ HWY_INLINE VecI small_to_int(VecF whole) {
 }
 
 HWY_INLINE VecF set(float value) { return hn::Set(kFloat, value); }
+
+/// a b + c, rounded twice. Not every target can fuse the two, and results must not depend on the
+/// target: nothing in lanes may use Highway's MulAdd, nor its mathematical functions, which do.
+HWY_INLINE VecF mul_add(VecF a, VecF b, VecF c) { return hn::Add(hn::Mul(a, b), c); }
 
 }  // namespace freepath::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -145,7 +145,7 @@ class FieldLookup {
       for (int axis = 0; axis < 3; ++axis) {
         place[axis] = set(map.offset[axis]);
         for (int from = 0; from < 3; ++from) {
-          place[axis] = hn::MulAdd(point[from], set(map.linear[from][axis]), place[axis]);
+          place[axis] = mul_add(point[from], set(map.linear[from][axis]), place[axis]);
         }
       }
       aim_at_voxel(k, place, lanes, random, state.taps[k]);
@@ -183,8 +183,8 @@ class FieldLookup {
   /// Keeps the points where a density function is to be evaluated.
   HWY_INLINE void aim_at_function(const VecF (&point)[3], MaskF lanes, State& state) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const VecF place = hn::MulAdd(hn::IfThenElseZero(lanes, point[axis]),
-                                    set(medium_.cell_edge[axis]), set(medium_.cell_origin[axis]));
+      const VecF place = mul_add(hn::IfThenElseZero(lanes, point[axis]),
+                                 set(medium_.cell_edge[axis]), set(medium_.cell_origin[axis]));
       hn::Store(place, kFloat, state.taps[0].fraction[axis]);
     }
   }
@@ -244,7 +244,7 @@ class FieldLookup {
           const VecI corner[3] = {voxel[x][0], voxel[y][1], voxel[z][2]};
           const VecI address = voxel_address(k, brick_entry(k, corner), voxel_in_brick(corner));
           const VecF value = hn::GatherIndex(kFloat, medium_.components[k].voxels, address);
-          sum = hn::MulAdd(hn::Mul(weight_xy, weight[z][2]), value, sum);
+          sum = mul_add(hn::Mul(weight_xy, weight[z][2]), value, sum);
         }
       }
     }

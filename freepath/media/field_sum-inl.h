@@ -151,44 +151,41 @@ class FieldSum {
   /// Chooses the component that a scattering belongs to, with probability proportional to the sum
   /// over channels of |w(λ) sigma_s,k(λ)/sigma_s(λ)|, and corrects the weights by
   /// sigma_s,k(λ)/(sigma_s(λ) P_k): the sum of their magnitudes stays what it was.
-  HWY_INLINE VecI choose_component(const State& state, const Coefficients& total, VecF uniform,
-                                   MaskF lanes, VecF (&weight)[N]) const {
-    return choose([&](int k) { return lookup_.density(k, state); }, total, uniform, lanes, weight);
+  template <class Random>
+  HWY_INLINE VecI choose_component(const State& state, const Coefficients& total,
+                                   const Random& random, MaskF lanes, VecF (&weight)[N]) const {
+    return choose([&](int k) { return lookup_.density(k, state); }, total, random, lanes, weight);
   }
-  HWY_INLINE VecI choose_component(const Control& control, const Coefficients& total, VecF uniform,
-                                   MaskF lanes, VecF (&weight)[N]) const {
-    return choose([&](int k) { return hn::Load(kFloat, control.density[k]); }, total, uniform,
-                  lanes, weight);
+  template <class Random>
+  HWY_INLINE VecI choose_component(const Control& control, const Coefficients& total,
+                                   const Random& random, MaskF lanes, VecF (&weight)[N]) const {
+    return choose([&](int k) { return hn::Load(kFloat, control.density[k]); }, total, random, lanes,
+                  weight);
   }
+  template <class Random>
   HWY_INLINE VecI choose_component(const State& state, const Control& control,
-                                   const Residual& total, VecF uniform, MaskF lanes,
+                                   const Residual& total, const Random& random, MaskF lanes,
                                    VecF (&weight)[N]) const {
-    return choose([&](int k) { return residual_density(k, state, control); }, total, uniform, lanes,
+    return choose([&](int k) { return residual_density(k, state, control); }, total, random, lanes,
                   weight);
   }
 
   /// Draws the component that a tentative collision belongs to, with probability rate_k/rate, and
   /// leaves a fresh uniform number and that component's rate [Galtier16].
-  template <class Segment>
-  HWY_INLINE VecI draw_component(const Segment& segment, VecF& uniform, VecF& rate) const {
-    VecI chosen = hn::Zero(kInt);
-    VecF chosen_rate = hn::Zero(kFloat);
-    VecF before = hn::Zero(kFloat);  // rates of the components up to the one chosen
-    VecF passed = hn::Zero(kFloat);
-    const VecF wanted = hn::Mul(uniform, rate);
+  template <class Segment, class Random>
+  HWY_INLINE VecI draw_component(const Segment& segment, const Random& random, MaskF lanes,
+                                 VecF& uniform, VecF& rate) const {
+    VecF parts[Medium::kMaxComponents];
     for (int k = 0; k < medium_.component_count; ++k) {
       const float sigma_t = medium_.components[k].sigma_a[0] + medium_.components[k].sigma_s[0];
-      const VecF rate_k = hn::Mul(maximum(k, segment), set(sigma_t));
-      // The last component that can collide takes what rounding leaves over.
-      const MaskF here = hn::And(hn::Ge(wanted, passed), hn::Gt(rate_k, hn::Zero(kFloat)));
-      chosen = hn::IfThenElse(int_mask(here), hn::Set(kInt, k), chosen);
-      assign(chosen_rate, here, rate_k);
-      assign(before, here, passed);
-      passed = hn::Add(passed, rate_k);
+      parts[k] = hn::Mul(maximum(k, segment), set(sigma_t));
     }
-    const MaskF drawn = hn::Gt(chosen_rate, hn::Zero(kFloat));
-    rate = hn::IfThenElse(drawn, chosen_rate, set(1.0F));
-    uniform = hn::Min(hn::Div(hn::Sub(wanted, before), rate), set(1.0F - 0x1p-24F));
+    const VecI chosen = draw(parts, random, lanes, uniform);
+    VecF chosen_rate = hn::Zero(kFloat);
+    for (int k = 0; k < medium_.component_count; ++k) {
+      assign(chosen_rate, float_mask(hn::Eq(chosen, hn::Set(kInt, k))), parts[k]);
+    }
+    rate = hn::IfThenElse(hn::Gt(chosen_rate, hn::Zero(kFloat)), chosen_rate, set(1.0F));
     return chosen;
   }
   /// Coefficients of one component a lane.
@@ -209,13 +206,13 @@ class FieldSum {
       const VecF density = density_of(k);
       for (int channel = 0; channel < N; ++channel) {
         const VecF scaled = hn::Mul(radiance[channel], set(component.radiance_scale[channel]));
-        sum.emission[channel] = hn::MulAdd(density, scaled, sum.emission[channel]);
+        sum.emission[channel] = mul_add(density, scaled, sum.emission[channel]);
       }
     }
   }
 
   static HWY_INLINE void add(VecF& sum, VecF density, float cross_section) {
-    sum = hn::MulAdd(density, set(cross_section), sum);
+    sum = mul_add(density, set(cross_section), sum);
   }
 
   template <class Segment>
@@ -231,10 +228,14 @@ class FieldSum {
   template <class Density>
   HWY_INLINE Coefficients sum(const Density& density_of) const {
     Coefficients sum;
+    const VecF first = density_of(0);
     for (int channel = 0; channel < N; ++channel) {
-      sum.sigma_a[channel] = sum.sigma_s[channel] = sum.emission[channel] = hn::Zero(kFloat);
+      const ComponentView& component = medium_.components[0];
+      sum.sigma_a[channel] = hn::Mul(first, set(component.sigma_a[channel]));
+      sum.sigma_s[channel] = hn::Mul(first, set(component.sigma_s[channel]));
+      sum.emission[channel] = hn::Mul(first, set(component.emission[channel]));
     }
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (int k = 1; k < medium_.component_count; ++k) {
       const VecF density = density_of(k);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
@@ -269,29 +270,43 @@ class FieldSum {
     return sum;
   }
 
-  template <class Density>
-  HWY_INLINE VecI choose(const Density& density_of, const Coefficients& total, VecF uniform,
+  template <class Density, class Random>
+  HWY_INLINE VecI choose(const Density& density_of, const Coefficients& total, const Random& random,
                          MaskF lanes, VecF (&weight)[N]) const {
     VecI chosen = hn::Zero(kInt);
-    if (medium_.component_count == 1) return chosen;
+    if (medium_.component_count == 1 || hn::AllFalse(kFloat, lanes)) return chosen;
     VecF share[N];
     channel_shares(total, weight, share);
+    VecF parts[Medium::kMaxComponents];
     VecF sum = hn::Zero(kFloat);
     for (int k = 0; k < medium_.component_count; ++k) {
-      sum = hn::MulAdd(hn::Abs(density_of(k)), shared_sum(k, share), sum);
+      parts[k] = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
+      sum = hn::Add(sum, parts[k]);
     }
-    VecF rest = hn::Mul(uniform, sum);
-    MaskF open = lanes;
-    for (int k = 0; k < medium_.component_count; ++k) {
-      const VecF part = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
-      // The last component that can scatter takes what rounding leaves over.
-      const MaskF here = hn::And(open, hn::Gt(part, hn::Zero(kFloat)));
-      const MaskF takes = hn::And(here, hn::Lt(rest, part));
-      chosen = hn::IfThenElse(int_mask(here), hn::Set(kInt, k), chosen);
-      open = hn::AndNot(takes, open);
-      rest = hn::Sub(rest, part);
-    }
+    VecF uniform = random.component_uniform();
+    chosen = draw(parts, random, lanes, uniform);
     correct_weights(density_of, total, share, sum, chosen, lanes, weight);
+    return chosen;
+  }
+
+  /// Draws one of the components with probabilities in proportion to their parts, one after the
+  /// other against those after it, and leaves a number that is uniform whatever was drawn.
+  template <class Random>
+  HWY_NOINLINE VecI draw(const VecF (&parts)[Medium::kMaxComponents], const Random& random,
+                         MaskF lanes, VecF& uniform) const {
+    const int last = medium_.component_count - 1;
+    VecF after[Medium::kMaxComponents];
+    after[last] = hn::Zero(kFloat);
+    for (int k = last; k > 0; --k) after[k - 1] = hn::Add(after[k], parts[k]);
+    VecI chosen = hn::Zero(kInt);
+    MaskF open = lanes;
+    for (int k = 0; k < last; ++k) {
+      VecF rest = uniform;
+      const MaskF here = random.split(parts[k], after[k], open, uint32_t(k) + 1, rest);
+      assign(uniform, open, rest);
+      open = hn::AndNot(here, open);
+      chosen = hn::IfThenElse(int_mask(open), hn::Set(kInt, k + 1), chosen);
+    }
     return chosen;
   }
 

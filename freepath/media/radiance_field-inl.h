@@ -21,7 +21,7 @@ HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[
   for (int axis = 0; axis < 3; ++axis) {
     VecF place = set(view.walk_to_voxels.offset[axis] - 0.5F);
     for (int from = 0; from < 3; ++from) {
-      place = hn::MulAdd(point[from], set(view.walk_to_voxels.linear[from][axis]), place);
+      place = mul_add(point[from], set(view.walk_to_voxels.linear[from][axis]), place);
     }
     const float last = static_cast<float>(view.brick_counts[axis] * BrickMap::kBrickSize - 2);
     // Maximum and minimum also keep idle lanes inside.
@@ -51,7 +51,7 @@ HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[
                hn::And(z, low));
     const VecI address = hn::Or(hn::ShiftLeft<9>(hn::GatherIndex(kInt, index, entry)), within);
     const VecF share = hn::Mul(hn::Mul(weight[cx][0], weight[cy][1]), weight[cz][2]);
-    sum = hn::MulAdd(share, hn::GatherIndex(kFloat, view.voxels, address), sum);
+    sum = mul_add(share, hn::GatherIndex(kFloat, view.voxels, address), sum);
   }
   return hn::IfThenElseZero(lanes, sum);
 }
@@ -66,7 +66,7 @@ HWY_INLINE VecF radiance_of(const RadianceView& view, VecF value) {
   const VecI number = hn::ConvertTo(kInt, base);
   const VecF before = hn::GatherIndex(kFloat, view.table, number);
   const VecF after = hn::GatherIndex(kFloat, view.table, hn::Add(number, hn::Set(kInt, 1)));
-  return hn::MulAdd(hn::Sub(place, base), hn::Sub(after, before), before);
+  return mul_add(hn::Sub(place, base), hn::Sub(after, before), before);
 }
 
 /// Radiances of N channels at points; channels that share a field share the look-up.

@@ -135,8 +135,7 @@ class SuperVoxelSegments {
       // The crossed plane decides its own axis; along the others the point stays in the segment.
       const VecF last = hn::IfThenElse(s.forward[axis], before, plane);
       const VecF crossed = hn::IfThenElse(s.forward[axis], plane, before);
-      const VecF found =
-          hn::Floor(hn::MulAdd(cursor.t, cursor.direction[axis], cursor.origin[axis]));
+      const VecF found = hn::Floor(mul_add(cursor.t, cursor.direction[axis], cursor.origin[axis]));
       const VecF stays = hn::Min(hn::Max(found, hn::Min(cursor.cell[axis], last)),
                                  hn::Max(cursor.cell[axis], last));
       const VecF next = hn::IfThenElse(s.exits_by[axis], crossed, stays);
@@ -153,7 +152,7 @@ class SuperVoxelSegments {
 
   HWY_INLINE void position(const Cursor& cursor, VecF (&point)[3]) const {
     for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = hn::MulAdd(cursor.t, cursor.direction[axis], cursor.origin[axis]);
+      point[axis] = mul_add(cursor.t, cursor.direction[axis], cursor.origin[axis]);
     }
   }
 

@@ -97,7 +97,7 @@ void SlabPaths::start_path(uint64_t number, Path& path) const {
   auto mu = static_cast<float>(settings_.mu0);
   if (settings_.diffuse) {
     // Equal radiance brings a flux in proportion to mu: density 2 mu. Never 0.
-    mu = std::sqrt(1.0F - random(path, StreamPurpose::kCamera).uniform());
+    mu = std::sqrt(random(path, StreamPurpose::kCamera).uniform());
   }
   path.branch.direction = {std::sqrt((1.0F - mu) * (1.0F + mu)), 0, mu};
 }

@@ -26,7 +26,7 @@ HWY_INLINE void add_analog_emission(const WalkModes& modes, const Coefficients& 
   }
   for (int channel = 0; channel < N; ++channel) {
     c.emitted[channel] =
-        hn::MulAdd(hn::Mul(c.weight[channel], sigma.emission[channel]), share, c.emitted[channel]);
+        mul_add(hn::Mul(c.weight[channel], sigma.emission[channel]), share, c.emitted[channel]);
   }
 }
 
@@ -39,13 +39,9 @@ HWY_INLINE void collide_by_delta(const WalkModes& modes, const Coefficients& sig
   const VecF scatter = channel_mean<N>(sigma.sigma_s);
   const VecF real = hn::Add(absorb, scatter);
   const bool weighted = modes.absorption == Absorption::kWeighted;
-  const VecF chosen = hn::Mul(c.uniform, c.rate);
-  const MaskF collided = hn::Lt(chosen, real);
-  c.absorb = weighted ? no_lanes() : hn::Lt(chosen, absorb);
-  c.scatter = hn::AndNot(c.absorb, collided);
-  const VecF scatter_begin = weighted ? hn::Zero(kFloat) : absorb;
   const VecF scatter_share = weighted ? real : scatter;
-  c.scatter_uniform = divide_or_zero(hn::Sub(chosen, scatter_begin), scatter_share);
+  const MaskF collided = set_events(hn::Mul(c.uniform, c.rate),
+                                    weighted ? hn::Zero(kFloat) : absorb, scatter_share, c);
   if (modes.emits) add_analog_emission<N>(modes, sigma, collided, c);
   if (N == 1 && !weighted) return;  // every weight is 1
   const VecF per_share = hn::Div(

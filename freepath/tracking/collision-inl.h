@@ -9,6 +9,7 @@
 #endif
 
 #include "freepath/base/lanes-inl.h"
+#include "freepath/tracking/random-inl.h"
 #include "freepath/tracking/walk_modes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,12 +22,12 @@ struct Collision {
   MaskF lanes;
   VecF rate;       ///< Density of tentative collisions here [1/m], of what is still to be decided.
   VecF full_rate;  ///< The same before a control has decided its part.
-  VecF uniform;    ///< [0,1), for the choice of the event.
+  VecF uniform;    ///< (0,1), for the choice of the event.
+  RandomPlace random;  ///< Of further numbers.
   VecF weight[N];
   VecF emitted[N];  ///< Tally of emitted radiance so far.
   MaskF scatter;
   MaskF absorb;
-  VecF scatter_uniform;  ///< [0,1) given a scattering, to choose its component.
   VecF* rows = nullptr;  ///< The method's own rows.
   VecF depth;            ///< Optical depth since the last tentative collision, if asked for.
 };
@@ -82,7 +83,7 @@ template <int N>
 HWY_INLINE void tally_emission(const VecF (&emission)[N], VecF share, Collision<N>& c) {
   for (int channel = 0; channel < N; ++channel) {
     c.emitted[channel] =
-        hn::MulAdd(hn::Mul(c.weight[channel], emission[channel]), share, c.emitted[channel]);
+        mul_add(hn::Mul(c.weight[channel], emission[channel]), share, c.emitted[channel]);
   }
 }
 
@@ -100,6 +101,19 @@ HWY_INLINE void merge_absorption(const WalkModes& modes, VecF& absorb, VecF& sca
   absorb = hn::Zero(kFloat);
 }
 
+/// Where among [0, absorb + scatter) a number stands: sets the events. The smaller of the two
+/// begins at 0, where a uniform number has all its digits, so that what is rare happens as often as
+/// it should; what the null events beyond lose by rounding is a trifle of the collisions before.
+template <int N>
+HWY_INLINE MaskF set_events(VecF chosen, VecF absorb, VecF scatter, Collision<N>& c) {
+  const MaskF collided = hn::Lt(chosen, hn::Add(absorb, scatter));
+  const MaskF first = hn::Lt(chosen, hn::Min(absorb, scatter));
+  const MaskF other = hn::Xor(first, hn::Lt(scatter, absorb));  // absorption, if anything
+  c.absorb = hn::And(collided, other);
+  c.scatter = hn::AndNot(other, collided);
+  return collided;
+}
+
 /// Chooses absorption, scattering or null with probabilities in proportion to `probability` (each
 /// ≥ 0) and weights the event. Emission is tallied at every tentative collision, or at the real
 /// ones alone.
@@ -112,17 +126,13 @@ HWY_INLINE void choose_event(const WalkModes& modes, const Coefficients& sigma,
   merge_absorption(modes, probability[0], probability[1]);
   const VecF real = hn::Add(probability[0], probability[1]);
   const VecF total = hn::Add(real, probability[2]);
-  const VecF chosen = hn::Mul(c.uniform, total);
-  c.absorb = hn::Lt(chosen, probability[0]);
-  c.scatter = hn::AndNot(c.absorb, hn::Lt(chosen, real));
-  c.scatter_uniform = divide_or_zero(hn::Sub(chosen, probability[0]), probability[1]);
+  const MaskF collided = set_events(hn::Mul(c.uniform, total), probability[0], probability[1], c);
 
   const VecF event_probability = hn::IfThenElse(
       c.absorb, probability[0], hn::IfThenElse(c.scatter, probability[1], probability[2]));
   // 1/(rate P_e), and without P_e for the tally that needs no event
   const VecF per_rate = hn::Div(set(1.0F), c.rate);
   const VecF scale = hn::Mul(divide_or_zero(total, event_probability), per_rate);
-  const MaskF collided = hn::Or(c.absorb, c.scatter);
   if (modes.emits) {
     const VecF share = modes.emission == EmissionTally::kCollision
                            ? per_rate

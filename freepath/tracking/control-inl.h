@@ -26,11 +26,12 @@ HWY_INLINE MaskF choose_control(const WalkModes& modes, const Coefficients& cont
   merge_absorption(modes, probability[0], probability[1]);
   const VecF decided = hn::Add(probability[0], probability[1]);
   const VecF total = hn::Add(decided, probability[2]);
-  const VecF chosen = hn::Mul(c.uniform, total);
-  c.absorb = hn::And(c.lanes, hn::Lt(chosen, probability[0]));
-  c.scatter = hn::And(c.lanes, hn::AndNot(c.absorb, hn::Lt(chosen, decided)));
-  c.scatter_uniform = divide_or_zero(hn::Sub(chosen, probability[0]), probability[1]);
-  const MaskF by_control = hn::Or(c.absorb, c.scatter);
+  // Leaves a number for the choice among the control's events, or among those of the rest.
+  const MaskF by_control =
+      hn::And(c.lanes, c.random.split(decided, probability[2], c.lanes, 0, c.uniform));
+  set_events(hn::Mul(c.uniform, decided), probability[0], probability[1], c);
+  c.absorb = hn::And(c.absorb, by_control);
+  c.scatter = hn::And(c.scatter, by_control);
 
   const VecF rate_share = hn::Div(total, c.rate);
   const VecF scale =
@@ -46,9 +47,7 @@ HWY_INLINE MaskF choose_control(const WalkModes& modes, const Coefficients& cont
         hn::IfThenElse(c.absorb, control.sigma_a[channel], control.sigma_s[channel]);
     assign(c.weight[channel], by_control, hn::Mul(c.weight[channel], hn::Mul(coefficient, scale)));
   }
-  // rate · P(rest), and a fresh uniform number out of what is left of this one.
-  c.rate = hn::Mul(c.rate, divide_or_zero(probability[2], total));
-  c.uniform = divide_or_zero(hn::Sub(chosen, decided), probability[2]);
+  c.rate = hn::Mul(c.rate, divide_or_zero(probability[2], total));  // rate · P(rest)
   return by_control;
 }
 

@@ -71,6 +71,10 @@ void set_option(Method& method, const MethodInfo& info, std::string_view assignm
 Method parse_method(std::string_view text, std::span<const MethodInfo> known) {
   const std::size_t colon = text.find(':');
   const MethodInfo& info = find_method(text.substr(0, colon), known);
+  if (!has_room_for(info)) {
+    fail("method '{}' has {} options, but there is room for {}", info.name, info.options.size(),
+         kMaxMethodOptions);
+  }
   Method method;
   method.name = info.name;
   for (std::size_t i = 0; i < info.options.size(); ++i) {

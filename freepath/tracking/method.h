@@ -2,6 +2,7 @@
 /// @file What a tracker or transmittance estimator says of itself, and how a user names it.
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,11 @@ struct Method {
   std::string name;
   std::array<float, kMaxMethodOptions> options{};
 };
+
+/// Whether a Method has room for the options of one; every registry asserts it.
+constexpr bool has_room_for(const MethodInfo& info) {
+  return info.options.size() <= std::size_t{kMaxMethodOptions};
+}
 
 /// Reads "name" or "name:option=value,option=value", where a value is a number or one of the words
 /// that the option knows.

@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
 /// The Philox block of a flight that draws its hero; tentative collisions count up from 0.
-inline constexpr uint32_t kHeroBlock = 0xFFFFFFFF;
+inline constexpr uint32_t kHeroBlock = 0x1FFFFFFF;
 
 /// Gives rays to the lanes of groups, and takes back what became of them.
 template <int N, class Tracker, class Segments, class Medium, class Entry>
@@ -198,10 +198,10 @@ class RayDealer {
       weight[channel] = hn::Load(kFloat, group.weight[channel]);
     }
     group.load_rows(rows);
-    const RandomWords random =
-        philox_lanes(hn::Set(kUint, kHeroBlock), hn::Load(kUint, group.stream),
-                     hn::Load(kUint, group.sample), hn::Load(kUint, group.pixel), seed_);
-    tracker_.template begin<N>(uniform_lanes(random.words[0]), weight, medium_.albedo(), rows);
+    HWY_ALIGN_MAX uint32_t block[kLanes];
+    hn::Store(hn::Set(kUint, kHeroBlock), kUint, block);
+    const RandomPlace random = {block, group.stream, group.sample, group.pixel, seed_};
+    tracker_.template begin<N>(random, lanes, weight, medium_.albedo(), rows);
     group.store_rows(rows, lanes);
   }
 

@@ -42,6 +42,10 @@ inline constexpr int kGroups = 6;
 /// still looks for its tentative collision; the others go on, and those resume in the next round.
 inline constexpr int kSearchingShare = 4;
 
+/// Optical depth is drawn anew where the rate is so many times below the mean rate on the way: what
+/// is left of a depth has 24 bits of the whole, of which 13 then tell how far a flight goes here.
+inline constexpr float kFaint = 0x1p11F;
+
 template <int N, class Tracker, class Segments, class Medium, class Entry>
 class Walk {
  public:
@@ -114,8 +118,10 @@ class Walk {
     const MaskF drawing = mask_of(group.drawing);
     const MaskU fresh = uint_mask(drawing);
     VecF tau = hn::Load(kFloat, group.tau);
-    assign(tau, drawing, exponential_lanes(random.words[0]));
+    const auto second = [&] { return second_words(group, block).words[0]; };
+    assign(tau, drawing, exponential_lanes(random.words[0], drawing, second));
     hn::Store(tau, kFloat, group.tau);
+    hn::Store(hn::IfThenElse(drawing, tau, hn::Load(kFloat, group.fresh)), kFloat, group.fresh);
     if constexpr (Tracker::kNeedsDepth) {
       hn::Store(hn::IfThenElse(drawing, tau, hn::Load(kFloat, group.drawn)), kFloat, group.drawn);
     }
@@ -124,6 +130,36 @@ class Walk {
       hn::Store(hn::IfThenElse(fresh, random.words[i + 1], old), kUint, group.words[i]);
     }
     hn::Store(hn::Add(block, hn::IfThenElseZero(fresh, hn::Set(kUint, 1))), kUint, group.block);
+  }
+
+  HWY_INLINE RandomWords second_words(const Group& group, VecU block) const {
+    return HWY_NAMESPACE::second_words(block, hn::Load(kUint, group.stream),
+                                       hn::Load(kUint, group.sample), hn::Load(kUint, group.pixel),
+                                       seed_);
+  }
+
+  /// The number that chooses the event at a tentative collision.
+  HWY_INLINE VecF event_uniform(const Group& group, MaskF lanes) const {
+    const auto second = [&] {
+      const VecU block = hn::Sub(hn::Load(kUint, group.block), hn::Set(kUint, 1));
+      return second_words(group, block).words[1];
+    };
+    return uniform_lanes(hn::Load(kUint, group.words[0]), lanes, second);
+  }
+
+  /// Draws the optical depth anew in lanes that go on at `t`: what is left of it is exponential
+  /// again, whatever has been passed.
+  HWY_NOINLINE void renew(MaskF lanes, VecF t, VecF& tau, Group& group) const {
+    const VecF renewed = group.random(seed_).exponential(hn::BitCast(kUint, t));
+    if constexpr (Tracker::kNeedsDepth) {
+      VecF drawn = hn::Load(kFloat, group.drawn);
+      assign(drawn, lanes, hn::Add(drawn, hn::Sub(renewed, tau)));
+      hn::Store(drawn, kFloat, group.drawn);
+    }
+    assign(tau, lanes, renewed);
+    VecF fresh = hn::Load(kFloat, group.fresh);
+    assign(fresh, lanes, renewed);
+    hn::Store(fresh, kFloat, group.fresh);
   }
 
   /// Every group takes a step before any takes its next: their gathers miss the caches together.
@@ -152,6 +188,13 @@ class Walk {
     const auto segment = segments_.segment(cursor, searching);
     const auto bounds = medium_.template bounds<Tracker::kRateNeedsControl>(segment);
     const VecF rate_here = rate_of(bounds, group);
+    // What is left of a depth has the digits of what was drawn: too few where the rate is that
+    // small.
+    const VecF passed = hn::Sub(hn::Load(kFloat, group.fresh), tau);
+    const VecF faint = hn::Mul(hn::Mul(rate_here, cursor.t), set(kFaint));
+    const MaskF coarse =
+        hn::And(hn::And(searching, hn::Lt(faint, passed)), hn::Gt(rate_here, hn::Zero(kFloat)));
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloat, coarse))) renew(coarse, cursor.t, tau, group);
     const VecF depth = hn::Mul(rate_here, hn::Sub(segment.exit, cursor.t));
     const MaskF hits = hn::And(searching, hn::Lt(tau, depth));
     const MaskF leaves = hn::AndNot(hits, searching);
@@ -236,25 +279,27 @@ class Walk {
 
   template <class Record>
   HWY_INLINE void draw_component(const Record& record, Group& group) const {
-    VecF uniform = uniform_lanes(hn::Load(kUint, group.words[0]));
+    const MaskF lanes = mask_of(group.colliding);
+    VecF uniform = event_uniform(group, lanes);
     VecF rate = hn::Load(kFloat, group.rate);
-    const VecI component = medium_.draw_component(record, uniform, rate);
+    const VecI component =
+        medium_.draw_component(record, group.random(seed_), lanes, uniform, rate);
     hn::Store(component, kInt, group.component);
     hn::Store(uniform, kFloat, group.uniform);
     hn::Store(rate, kFloat, group.rest_rate);
   }
 
+  /// All but the number that chooses.
   HWY_INLINE Collision<N> begin_collision(const Group& group, uint32_t lanes) const {
     Collision<N> c;
     c.lanes = mask_of(lanes);
     c.full_rate = c.rate = hn::IfThenElse(c.lanes, hn::Load(kFloat, group.rate), set(1.0F));
-    c.uniform = uniform_lanes(hn::Load(kUint, group.words[0]));
+    c.random = group.random(seed_);
     for (int channel = 0; channel < N; ++channel) {
       c.weight[channel] = hn::Load(kFloat, group.weight[channel]);
       c.emitted[channel] = hn::Load(kFloat, group.emitted[channel]);
     }
     c.scatter = c.absorb = no_lanes();
-    c.scatter_uniform = hn::Zero(kFloat);
     return c;
   }
 
@@ -276,11 +321,12 @@ class Walk {
   /// Lets the control decide what it can without a look-up.
   HWY_INLINE void decide(const VecF (&point)[3], Group& group) {
     Collision<N> c = begin_collision(group, group.colliding);
+    c.uniform = event_uniform(group, c.lanes);
     auto control = medium_.coefficients(group.control);
     if (varies_emission()) medium_.add_emission(group.control, point, c.lanes, control);
     const MaskF decided = tracker_.template decide<N>(modes_, control, c);
     const VecI component =
-        medium_.choose_component(group.control, control, c.scatter_uniform, c.scatter, c.weight);
+        medium_.choose_component(group.control, control, c.random, c.scatter, c.weight);
     hn::Store(component, kInt, group.component);
     hn::Store(c.rate, kFloat, group.rest_rate);
     hn::Store(c.uniform, kFloat, group.uniform);
@@ -304,6 +350,8 @@ class Walk {
     if constexpr ((Tracker::kControl && Tracker::kDecides) || Tracker::kOneComponent) {
       c.uniform = hn::Load(kFloat, group.uniform);
       c.rate = hn::IfThenElse(c.lanes, hn::Load(kFloat, group.rest_rate), set(1.0F));
+    } else {
+      c.uniform = event_uniform(group, c.lanes);
     }
     VecF rows[Group::kStoredRows];
     group.load_rows(rows);
@@ -327,7 +375,7 @@ class Walk {
         medium_.add_emission(group.lookup, group.control, point, c.lanes, sigma);
       }
       tracker_.template collide<N>(modes_, sigma, c);
-      component = medium_.choose_component(group.lookup, group.control, sigma, c.scatter_uniform,
+      component = medium_.choose_component(group.lookup, group.control, sigma, c.random,
                                            hn::And(c.scatter, c.lanes), c.weight);
       sigma_t = hn::Sub(sigma.sigma_t[0], hn::Sub(c.full_rate, c.rate));
     } else {
@@ -336,7 +384,7 @@ class Walk {
         medium_.add_emission(group.lookup, point, c.lanes, sigma);
       }
       tracker_.template collide<N>(modes_, sigma, c);
-      component = medium_.choose_component(group.lookup, sigma, c.scatter_uniform,
+      component = medium_.choose_component(group.lookup, sigma, c.random,
                                            hn::And(c.scatter, c.lanes), c.weight);
       sigma_t = hn::Add(sigma.sigma_a[0], sigma.sigma_s[0]);
     }
@@ -364,7 +412,7 @@ class Walk {
     count_weights(c);
     if constexpr (Tracker::kNeedsBound) {
       // Rounding of an interpolated maximum is no violation.
-      const MaskF above = hn::Gt(sigma_t, hn::MulAdd(c.full_rate, set(0.00001F), c.rate));
+      const MaskF above = hn::Gt(sigma_t, mul_add(c.full_rate, set(0.00001F), c.rate));
       statistics_.bound_violations += hn::CountTrue(kFloat, hn::And(above, c.lanes));
     }
   }

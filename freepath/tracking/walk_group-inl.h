@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "freepath/base/lanes-inl.h"
+#include "freepath/tracking/random-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
@@ -28,6 +29,7 @@ struct WalkGroup {
   typename Segments::State segments;
   HWY_ALIGN_MAX float rows[kStoredRows][kLanes];  ///< The method's own.
   HWY_ALIGN_MAX float tau[kLanes];        ///< Optical depth still to go to the tentative collision.
+  HWY_ALIGN_MAX float fresh[kLanes];      ///< The same where its digits were drawn.
   HWY_ALIGN_MAX float drawn[kLanes];      ///< Optical depth from the last one to it.
   HWY_ALIGN_MAX float rate[kLanes];       ///< Where it happened [1/m].
   HWY_ALIGN_MAX float rest_rate[kLanes];  ///< Of what a control has left to decide [1/m].
@@ -65,6 +67,10 @@ struct WalkGroup {
       assign(kept, lanes, values[row]);
       hn::Store(kept, kFloat, rows[row]);
     }
+  }
+
+  HWY_INLINE RandomPlace random(uint64_t seed) const {
+    return {block, stream, sample, pixel, seed};
   }
 
   /// Component densities that a tentative collision reads.

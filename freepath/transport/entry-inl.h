@@ -91,8 +91,8 @@ HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
     direction[axis] = hn::Zero(kFloat);
     for (int from = 0; from < 3; ++from) {
       const VecF factor = set(map.linear[from][axis]);
-      origin[axis] = hn::MulAdd(world_origin[from], factor, origin[axis]);
-      direction[axis] = hn::MulAdd(world_direction[from], factor, direction[axis]);
+      origin[axis] = mul_add(world_origin[from], factor, origin[axis]);
+      direction[axis] = mul_add(world_direction[from], factor, direction[axis]);
     }
     inverse[axis] = entry_inverse(direction[axis]);
     const VecF to_low =
@@ -120,7 +120,7 @@ HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
   hn::Store(length, kFloat, rows_.length + row);
   VecI record = hn::Zero(kInt);
   for (int axis = 0; axis < 3; ++axis) {
-    const VecF entry = hn::MulAdd(begin, direction[axis], origin[axis]);
+    const VecF entry = mul_add(begin, direction[axis], origin[axis]);
     const VecF last = set(static_cast<float>(medium_.cell_counts[axis] - 1));
     const VecF cell = hn::Min(hn::Max(hn::Floor(entry), hn::Zero(kFloat)), last);
     const VecF safe_cell = hn::IfThenElseZero(meets, cell);

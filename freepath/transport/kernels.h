@@ -14,7 +14,7 @@
 
 namespace freepath {
 
-/// The instructions a walk is compiled for. AVX2 and AVX-512 give the same bits.
+/// The instructions a walk is compiled for. All give the same bits.
 enum class Simd { kBest, kOneLane, kSse4, kAvx2, kAvx512 };
 
 /// @throws Error for an unknown name

@@ -72,6 +72,7 @@ void fly_stream(const MediumView& view, std::span<const float> options, const Wa
 
 template <class Method>
 Kernel kernel(void (*check)(const Medium&, Interpolation) = nullptr) {
+  static_assert(has_room_for(Method::kInfo), "raise kMaxMethodOptions");
   return {Method::kInfo,
           walk_table([]<int kN>() -> WalkFunction { return &fly_stream<kN, Method>; }), check,
           /*uniform_emission=*/true};

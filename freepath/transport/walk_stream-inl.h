@@ -39,6 +39,7 @@ WalkTable walks_of() {
 
 template <class... Methods>
 std::vector<Kernel> make_kernels(MethodList<Methods...> /*list*/) {
+  static_assert((has_room_for(Methods::kInfo) && ...), "raise kMaxMethodOptions");
   return {Kernel{Methods::kInfo, walks_of<Methods>()}...};
 }
 

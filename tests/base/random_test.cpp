@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -63,18 +64,83 @@ TEST(Philox, EveryBitOfCounterAndKeyFlipsHalfOfTheOutput) {
   }
 }
 
-TEST(OpenUniform, IsNeverZeroAndNeverAboveOne) {
-  EXPECT_GT(open_uniform_from_bits(0), 0.0F);
-  EXPECT_LE(open_uniform_from_bits(0xffffffff), 1.0F);
-  EXPECT_EQ(open_uniform_from_bits(0), 0x1p-32F);  // the largest exponential is 32 log 2 = 22.18
-  for (uint32_t bits = 0; bits < 4096; ++bits) {
-    EXPECT_GT(open_uniform_from_bits(bits), 0.0F) << bits;
-    EXPECT_LE(open_uniform_from_bits(~bits), 1.0F) << bits;
-    EXPECT_GE(open_uniform_from_bits(bits + 1), open_uniform_from_bits(bits)) << bits;
+/// The number that the 63 bits of a pair of words stand for.
+double uniform_exactly(uint32_t bits, uint32_t second) {
+  return (double(bits >> 1) + (double(second >> 1) + 0.5) * 0x1p-31) * 0x1p-31;
+}
+
+/// The first bit of the words chooses the side of log 2, the rest the place on it.
+double exponential_exactly(uint32_t bits, uint32_t second) {
+  const double place =
+      (double(bits & 0x7FFFFFFFU) + (double(second >> 1) + 0.5) * 0x1p-31) * 0x1p-32;
+  return bits >> 31 != 0 ? -std::log(place) : -std::log1p(-place);
+}
+
+/// Words of every size, from 0 and from both ends of each half.
+std::vector<Words> words_of_every_size() {
+  std::vector<Words> words;
+  for (uint32_t i = 0; i < 200'000; ++i) {
+    const Words random = philox({i, 0, 0, 0}, {0, 0});
+    const uint32_t size = i < 4096 ? i : random[0] >> (i % 32);
+    for (const uint32_t bits : {size, ~size, 0x7FFFFFFFU - (size >> 1), 0x80000000U | size >> 1}) {
+      words.push_back({bits, i < 8 ? 0U - (i & 1U) : random[1], 0, 0});
+    }
+  }
+  return words;
+}
+
+TEST(UniformFromWords, HasAllItsDigitsNearZeroAndStaysBetweenZeroAndOne) {
+  for (const auto& [bits, second, c, d] : words_of_every_size()) {
+    const float value = uniform_from_words(bits, second);
+    const double exact = uniform_exactly(bits, second);
+    ASSERT_TRUE(value > 0 && value < 1) << bits;
+    // Where no second word is read it could move the number by half a unit of 2^-31.
+    const double unread = bits >> 1 < kFewDigits ? 0 : 0x1p-32;
+    ASSERT_NEAR(value, exact, 0x1p-23 * std::max(exact, 0x1p-62) + unread) << bits;
+  }
+  EXPECT_EQ(uniform_from_words(0, 0), 0x1p-63F);
+  EXPECT_EQ(uniform_from_words(0xFFFFFFFF, 0), 1 - 0x1p-24F);
+}
+
+TEST(ExponentialFromWords, HasAllItsDigitsFromOneEndToTheOther) {
+  for (const auto& [bits, second, c, d] : words_of_every_size()) {
+    const double exact = exponential_exactly(bits, second);
+    const bool read = (bits & 0x7FFFFFFFU) < kFewDigits;
+    ASSERT_NEAR(exponential_from_words(bits, second), exact, (read ? 3.2e-7 : 4e-7) * exact)
+        << bits;
+  }
+  // What a float can't have: 24 bits of 1 end at 22.18 one way and at 6e-8 the other.
+  EXPECT_NEAR(exponential_from_words(0x80000000U, 0), 64 * std::numbers::ln2, 1e-5);
+  EXPECT_FLOAT_EQ(exponential_from_words(0, 0), 0x1p-64F);
+}
+
+// 2^21 numbers: of the events of probability p, what a second word has to say shows from 2^-8 down.
+TEST(RandomStream, RareEventsHappenAsOftenAsTheyShould) {
+  constexpr int kNumbers = 1 << 21;
+  constexpr int kOctaves = 24;
+  uint64_t uniform[kOctaves] = {};
+  uint64_t near[kOctaves] = {};
+  uint64_t far[kOctaves] = {};
+  RandomStream stream(11, 0, 0, 0);
+  for (int i = 0; i < kNumbers; ++i) {
+    const float u = stream.uniform();
+    const float tau = stream.exponential();
+    for (int k = 0; k < kOctaves && u < std::ldexp(0.7F, -k); ++k) ++uniform[k];
+    for (int k = 0; k < kOctaves && tau < std::ldexp(0.7F, -k); ++k) ++near[k];
+    for (int k = 0; k < kOctaves && tau > 0.7F * static_cast<float>(k); ++k) ++far[k];
+  }
+  for (int k = 0; k < kOctaves; ++k) {
+    const double p = std::ldexp(double{0.7F}, -k);
+    EXPECT_GT(testing::binomial_two_sided_p(uniform[k], kNumbers, p), 1e-4 / kOctaves) << k;
+    EXPECT_GT(testing::binomial_two_sided_p(near[k], kNumbers, -std::expm1(-p)), 1e-4 / kOctaves)
+        << k;
+    EXPECT_GT(testing::binomial_two_sided_p(far[k], kNumbers, std::exp(-double{0.7F} * k)),
+              1e-4 / kOctaves)
+        << k;
   }
 }
 
-TEST(Uniform, ReachesZeroButNotOne) {
+TEST(UniformFromBits, ReachesZeroButNotOne) {
   EXPECT_EQ(uniform_from_bits(0), 0.0F);
   EXPECT_LT(uniform_from_bits(0xffffffff), 1.0F);
   EXPECT_EQ(uniform_from_bits(0xffffffff), 1 - 0x1p-24F);

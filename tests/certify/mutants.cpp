@@ -46,7 +46,7 @@ struct Planted : Method {
     for (int channel = 0; channel < N; ++channel) {
       assign(c.weight[channel], lanes, hn::Mul(c.weight[channel], factor));
       const VecF added = hn::Sub(c.emitted[channel], before.emitted[channel]);
-      c.emitted[channel] = hn::MulAdd(added, set(absorption), before.emitted[channel]);
+      c.emitted[channel] = mul_add(added, set(absorption), before.emitted[channel]);
     }
   }
 

@@ -70,6 +70,13 @@ TEST(ParseMethod, ListsTheOptionsForAnUnknownOne) {
             "'rich' has no option ''; its options are: rate-scale, roulette");
 }
 
+TEST(ParseMethod, RefusesAMethodWithMoreOptionsThanThereIsRoomFor) {
+  static constexpr MethodOption kMany[kMaxMethodOptions + 1] = {};
+  static constexpr MethodInfo kGreedy = {"greedy", "", "", "", "", kMany};
+  static_assert(!has_room_for(kGreedy));
+  EXPECT_THROW(parse_method("greedy", {&kGreedy, 1}), Error);
+}
+
 TEST(ParseMethod, AsksForAMissingValue) {
   EXPECT_EQ(complaint("rich:roulette"),
             "option 'roulette' of 'rich' needs a value: rich:roulette=0.1");

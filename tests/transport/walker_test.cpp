@@ -12,6 +12,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
+#include "freepath/transport/kernels.h"
 #include "tests/statistics.h"
 #include "tests/transport/walk_fixtures.h"
 
@@ -170,7 +171,8 @@ std::vector<Method> all_methods() {
 
 /// Walks a stream in batches.
 Walked fly(const Method& method, const RayStream& rays, std::size_t batch) {
-  const Walker walker(colourful_medium(), method.settings);
+  const bool shares = shares_paths(colourful_medium(), method.settings);
+  const Walker walker(colourful_medium(), method.settings, shares ? Walker::kAllChannels : 0);
   Walked flown;
   FlightStream flights;
   for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
@@ -225,19 +227,51 @@ TEST(Walker, FlightsDependNeitherOnSlotsNorOnBatchesNorOnNeighbours) {
   }
 }
 
-TEST(Walker, Avx2AndAvx512GiveTheSameBits) {
-  const std::vector<Simd> available = available_simd();
-  if (std::count(available.begin(), available.end(), Simd::kAvx512) == 0) {
-    GTEST_SKIP() << "this machine has no AVX-512";
+/// Every tracker and estimator that walks in lanes, under every interpolation.
+std::vector<Method> all_lane_methods() {
+  std::vector<Method> methods;
+  const auto add = [&](const MethodInfo& info, bool transmittance) {
+    for (const Interpolation interpolation : kInterpolations) {
+      Method method;
+      (transmittance ? method.settings.transmittance : method.settings.tracker) = info.name;
+      method.settings.interpolation = interpolation;
+      method.transmittance = transmittance;
+      method.name = std::string(info.name) + ", " + name_of(interpolation);
+      methods.push_back(method);
+    }
+  };
+  const auto is_in_lanes = [](const std::vector<Kernel>& kernels, std::string_view name) {
+    return std::any_of(kernels.begin(), kernels.end(), [&](const Kernel& kernel) {
+      return kernel.info.name == name && !kernel.uniform_emission;
+    });
+  };
+  const KernelTable& table = kernels(Simd::kOneLane);
+  for (const MethodInfo& info : tracker_infos()) {
+    if (is_in_lanes(table.trackers, info.name)) add(info, false);
   }
-  const RayStream rays = various_rays(20'000);
-  for (Method method : all_methods()) {
-    method.settings.simd = Simd::kAvx512;
-    const Walked wide = fly(method, rays, rays.size());
-    method.settings.simd = Simd::kAvx2;
-    const Walked narrow = fly(method, rays, rays.size());
-    ASSERT_EQ(wide.flights, narrow.flights) << method.name;
-    expect_same_statistics(wide.statistics, narrow.statistics, method.name);
+  for (const MethodInfo& info : transmittance_infos()) {
+    if (is_in_lanes(table.transmittance, info.name)) add(info, true);
+  }
+  return methods;
+}
+
+// One lane and SSE4 have no fused multiply-add.
+TEST(Walker, EveryTargetGivesTheSameBits) {
+  const RayStream rays = various_rays(5'000);
+  const std::vector<Method> methods = all_lane_methods();
+  ASSERT_GE(methods.size(), 3 * (8U + 4U));
+  ASSERT_GE(available_simd().size(), 2U);
+  for (Method method : methods) {
+    method.settings.simd = Simd::kOneLane;
+    const Walked one = fly(method, rays, rays.size());
+    for (const Simd simd : available_simd()) {
+      if (simd == Simd::kOneLane) continue;
+      method.settings.simd = simd;
+      const Walked other = fly(method, rays, rays.size());
+      const std::string name = method.name + ", " + std::string(to_string(simd));
+      ASSERT_EQ(one.flights, other.flights) << name;
+      expect_same_statistics(one.statistics, other.statistics, name);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// @file A flight as the reference methods make it, and the random numbers they draw.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -22,17 +23,26 @@ struct ReferenceFlight {
 /// exp(-depth) is 0 beyond, for any weight that a float can hold.
 inline constexpr double kOpaque = 850;
 
-/// [0,1) with 53 bits, the first 32 of which are the stream's next word.
-inline double uniform_double(RandomStream& random) {
+/// 64 bits, the first 32 of which are the stream's next word.
+inline uint64_t long_bits(RandomStream& random) {
   const uint64_t high = random.bits();
-  const uint64_t low = random.bits();
-  return static_cast<double>((high << 32 | low) >> 11) * 0x1p-53;
+  return high << 32 | random.bits();
 }
 
-/// An optical depth, exponential with mean 1, as far out as 37. Its leading digits are those of
-/// RandomStream::exponential().
+/// Uniform in (0,1), with a relative precision of 2^-53 down to 2^-11 and of 2^-(64-n) at 2^-n
+/// below.
+inline double uniform_double(RandomStream& random) {
+  constexpr double kLast = 1 - 0x1p-53;
+  return std::min((static_cast<double>(long_bits(random)) + 0.5) * 0x1p-64, kLast);
+}
+
+/// An optical depth, exponential with mean 1, from 2^-65 to 45, by the same law as
+/// exponential_from_words(), whose leading digits it has.
 inline double exponential_double(RandomStream& random) {
-  return -std::log(uniform_double(random) + 0x1p-54);
+  const uint64_t bits = long_bits(random);
+  const uint64_t low = bits & ~(uint64_t{1} << 63);
+  const double v = (static_cast<double>(low) + 0.5) * 0x1p-64;
+  return low != bits ? -std::log(v) : -std::log1p(-v);
 }
 
 /// Multiplies the weights, which ends a flight of which nothing is left.

@@ -7,12 +7,11 @@
 #define FREEPATH_TRACKING_HERO_WAVELENGTH_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
-
 #include <type_traits>
 
 #include "freepath/tracking/collision-inl.h"
 #include "freepath/tracking/method.h"
+#include "freepath/tracking/random-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
@@ -57,8 +56,8 @@ struct HeroWavelength : MethodTraits {
 
   /// Draws the hero of a flight; rows[0, N) hold the relative densities of the path so far.
   template <int N>
-  HWY_INLINE void begin(VecF uniform, const VecF (&weight)[N], const float* albedo,
-                        VecF* rows) const {
+  HWY_INLINE void begin(const RandomPlace& random, MaskF lanes, const VecF (&weight)[N],
+                        const float* albedo, VecF* rows) const {
     if (by_throughput) {
       VecF wanted[N];
       VecF sum = hn::Zero(kFloat);
@@ -69,19 +68,23 @@ struct HeroWavelength : MethodTraits {
       for (int channel = 0; channel < N; ++channel) {
         const VecF share = divide_or_zero(wanted[channel], sum);
         const MaskF some = hn::Gt(sum, hn::Zero(kFloat));
-        rows[channel] =
-            hn::IfThenElse(some, hn::MulAdd(share, set(0.9F * N), set(0.1F)), set(1.0F));
+        rows[channel] = hn::IfThenElse(some, mul_add(share, set(0.9F * N), set(0.1F)), set(1.0F));
       }
     }
-    VecF sum = rows[0];
-    for (int channel = 1; channel < N; ++channel) sum = hn::Add(sum, rows[channel]);
-    const VecF chosen = hn::Mul(uniform, sum);
-    VecF passed = hn::Zero(kFloat);
+    // One channel after the other, against those after it.
+    VecF after[N];
+    after[N - 1] = hn::Zero(kFloat);
+    for (int channel = N - 1; channel > 0; --channel) {
+      after[channel - 1] = hn::Add(after[channel], rows[channel]);
+    }
+    VecF uniform = random.uniform(0, hn::Zero(kUint));
     VecF hero = hn::Zero(kFloat);
+    MaskF open = lanes;
     for (int channel = 0; channel < N; ++channel) {
-      const MaskF here = hn::And(hn::Ge(chosen, passed), hn::Gt(rows[channel], hn::Zero(kFloat)));
-      assign(hero, here, set(static_cast<float>(channel)));
-      passed = hn::Add(passed, rows[channel]);
+      const MaskF here =
+          random.split(rows[channel], after[channel], open, uint32_t(channel), uniform);
+      assign(hero, hn::And(open, here), set(static_cast<float>(channel)));
+      open = hn::AndNot(here, open);
     }
     rows[3 * N] = hero;
   }
@@ -96,7 +99,7 @@ struct HeroWavelength : MethodTraits {
   template <int N, class Bounds>
   HWY_INLINE void advance(const Bounds& bounds, VecF length, VecF* rows) const {
     for (int channel = 0; channel < N; ++channel) {
-      rows[N + channel] = hn::MulAdd(bounds.majorant[channel], length, rows[N + channel]);
+      rows[N + channel] = mul_add(bounds.majorant[channel], length, rows[N + channel]);
       rows[2 * N + channel] = bounds.majorant[channel];
     }
   }
@@ -109,40 +112,37 @@ struct HeroWavelength : MethodTraits {
     const VecF* const majorant = c.rows + 2 * N;
     const bool weighted = modes.absorption == Absorption::kWeighted;
     VecF sigma_t[N];
-    VecF absorb[N];  // what each channel would take for absorption, if it were the hero
+    VecF absorb[N];   // what each channel would take for absorption, if it were the hero,
+    VecF scatter[N];  // and for scattering
     for (int channel = 0; channel < N; ++channel) {
       sigma_t[channel] = hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]);
       absorb[channel] = weighted ? hn::Zero(kFloat) : sigma.sigma_a[channel];
+      scatter[channel] = weighted ? sigma_t[channel] : sigma.sigma_s[channel];
     }
     if (modes.emits && modes.emission == EmissionTally::kCollision) {
       VecF sum = hn::Zero(kFloat);
       for (int channel = 0; channel < N; ++channel) {
-        sum = hn::MulAdd(density[channel], majorant[channel], sum);
+        sum = mul_add(density[channel], majorant[channel], sum);
       }
       tally_emission<N>(sigma.emission, divide_or_zero(set(float{N}), sum), c);
     }
     const VecF hero = c.rows[3 * N];
     const VecF chosen = hn::Mul(c.uniform, c.rate);
-    const VecF hero_absorb = of_hero<N>(absorb, hero);
-    const VecF hero_real = of_hero<N>(sigma_t, hero);
-    c.absorb = hn::Lt(chosen, hero_absorb);
-    c.scatter = hn::AndNot(c.absorb, hn::Lt(chosen, hero_real));
-    c.scatter_uniform =
-        divide_or_zero(hn::Sub(chosen, hero_absorb), hn::Sub(hero_real, hero_absorb));
+    const MaskF collided =
+        set_events(chosen, of_hero<N>(absorb, hero), of_hero<N>(scatter, hero), c);
     VecF event[N];
     VecF sum = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
       // rate_λ P_e,λ: the density of this event if λ were the hero
-      const VecF real =
-          hn::IfThenElse(c.absorb, absorb[channel], hn::Sub(sigma_t[channel], absorb[channel]));
+      const VecF real = hn::IfThenElse(c.absorb, absorb[channel], scatter[channel]);
       const VecF null = hn::Sub(majorant[channel], sigma_t[channel]);
-      event[channel] = hn::IfThenElse(hn::Or(c.absorb, c.scatter), real, null);
+      event[channel] = hn::IfThenElse(collided, real, null);
       density[channel] = hn::Mul(density[channel], event[channel]);
       sum = hn::Add(sum, density[channel]);
     }
     const VecF per_mean = divide_or_zero(set(float{N}), sum);
     if (modes.emits && modes.emission == EmissionTally::kAnalog) {
-      const MaskF counted = emission_event(modes, c, hn::Or(c.absorb, c.scatter));
+      const MaskF counted = emission_event(modes, c, collided);
       tally_emission<N>(sigma.emission, hn::IfThenElseZero(counted, per_mean), c);
     }
     for (int channel = 0; channel < N; ++channel) {
@@ -183,7 +183,7 @@ struct HeroWavelength : MethodTraits {
     VecF least = rows[N];
     for (int channel = 1; channel < N; ++channel) least = hn::Min(least, rows[N + channel]);
     for (int channel = 0; channel < N; ++channel) {
-      const VecF factor = hn::Exp(kFloat, hn::Sub(least, rows[N + channel]));
+      const VecF factor = exp_of_negative(hn::Sub(least, rows[N + channel]));
       weight[channel] = hn::Mul(weight[channel], factor);
       rows[channel] = hn::Mul(rows[channel], factor);
       rows[N + channel] = hn::Zero(kFloat);

@@ -7,9 +7,8 @@
 #define FREEPATH_TRACKING_NEXT_FLIGHT_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
-
 #include "freepath/tracking/method.h"
+#include "freepath/tracking/random-inl.h"
 #include "freepath/tracking/roulette-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -55,12 +54,12 @@ struct NextFlight : MethodTraits {
   HWY_INLINE void collide(const WalkModes& /*modes*/, const Coefficients& sigma,
                           Collision<N>& c) const {
     const VecF per_rate = hn::Div(set(1.0F), c.rate);
-    const VecF passed = hn::Exp(kFloat, hn::Neg(c.depth));
+    const VecF passed = exp_of_negative(hn::Neg(c.depth));
     VecF largest = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
       const VecF sigma_t = hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]);
       c.weight[channel] = hn::Mul(c.weight[channel], hn::Mul(hn::Sub(c.rate, sigma_t), per_rate));
-      c.rows[channel] = hn::MulAdd(c.rows[channel], passed, c.weight[channel]);
+      c.rows[channel] = mul_add(c.rows[channel], passed, c.weight[channel]);
       largest = hn::Max(largest, hn::Max(hn::Abs(c.weight[channel]), hn::Abs(c.rows[channel])));
     }
     const VecF gain = roulette_gain(roulette, largest, c.uniform);
@@ -74,7 +73,7 @@ struct NextFlight : MethodTraits {
   /// @param depth passed since the last collision
   template <int N>
   HWY_INLINE void finish(const VecF* rows, VecF depth, VecF (&weight)[N]) const {
-    const VecF passed = hn::Exp(kFloat, hn::Neg(depth));
+    const VecF passed = exp_of_negative(hn::Neg(depth));
     for (int channel = 0; channel < N; ++channel) {
       weight[channel] = hn::Mul(rows[channel], passed);
     }

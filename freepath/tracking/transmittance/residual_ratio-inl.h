@@ -7,9 +7,8 @@
 #define FREEPATH_TRACKING_RESIDUAL_RATIO_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
-
 #include "freepath/tracking/method.h"
+#include "freepath/tracking/random-inl.h"
 #include "freepath/tracking/roulette-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -61,7 +60,7 @@ struct ResidualRatio : MethodTraits {
   template <int N, class Bounds>
   HWY_INLINE void advance(const Bounds& bounds, VecF length, VecF* rows) const {
     for (int channel = 0; channel < N; ++channel) {
-      rows[channel] = hn::MulAdd(bounds.minorant[channel], length, rows[channel]);
+      rows[channel] = mul_add(bounds.minorant[channel], length, rows[channel]);
     }
   }
 
@@ -79,7 +78,7 @@ struct ResidualRatio : MethodTraits {
   template <int N>
   HWY_INLINE void finish(const VecF* rows, VecF /*depth*/, VecF (&weight)[N]) const {
     for (int channel = 0; channel < N; ++channel) {
-      weight[channel] = hn::Mul(weight[channel], hn::Exp(kFloat, hn::Neg(rows[channel])));
+      weight[channel] = hn::Mul(weight[channel], exp_of_negative(hn::Neg(rows[channel])));
     }
   }
 
