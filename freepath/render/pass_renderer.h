@@ -28,6 +28,8 @@ inline constexpr std::size_t kPathsPerJob = 8192;
 /// part of the time; but not fewer paths, since lanes idle at the end of each job.
 inline constexpr double kHastyShareOfTime = 0.1;
 inline constexpr std::size_t kFewestPathsPerJob = 512;
+/// Even where many pixels are best traced together.
+inline constexpr std::size_t kMostPixelsOfHastyJobs = 1024;
 inline constexpr uint32_t kMaxSamplesPerPass = 256;
 inline constexpr double kSecondsPerPass = 2;
 inline constexpr double kSecondsBetweenReports = 0.1;
@@ -36,15 +38,13 @@ inline constexpr double kSecondsBetweenReports = 0.1;
 template <class Wavefront>
 class PassRenderer {
  public:
-  /// Called before a pass over samples [first, first + count) of every pixel.
-  using Prepare = std::function<void(uint32_t first, uint32_t count)>;
+  /// Called before a pass over samples [first, first + count) of every pixel. It gives the fewest
+  /// pixels of a job, where many are best traced together.
+  using Prepare = std::function<std::size_t(uint32_t first, uint32_t count)>;
 
-  /// @param fewest_pixels of a job, where paths of a sample are best traced together
   PassRenderer(std::function<Wavefront()> make_wavefront, const RenderSettings& settings,
-               const ProgressFunction& progress, Film& film, Prepare prepare = {},
-               std::size_t fewest_pixels = 1)
+               const ProgressFunction& progress, Film& film, Prepare prepare = {})
       : prepare_(std::move(prepare)),
-        fewest_pixels_(fewest_pixels),
         settings_(settings),
         progress_(progress),
         film_(film),
@@ -61,7 +61,7 @@ class PassRenderer {
       samples = std::min(samples, wanted - samples_done_);
       const double before = seconds_since(start_);
       deadline_.begin_pass(before, samples_done_ == 0);
-      if (prepare_) prepare_(samples_done_, samples);
+      if (prepare_) fewest_pixels_ = prepare_(samples_done_, samples);
       pass(samples);
       if (over_) break;
       samples_done_ += samples;
@@ -116,8 +116,10 @@ class PassRenderer {
     const auto pass_is_over = [&] { return is_over(samples); };
     const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
     std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
+    const std::size_t fewest =
+        hasty ? std::min(fewest_pixels_, kMostPixelsOfHastyJobs) : fewest_pixels_;
     while (!over_) {
-      const std::size_t wanted = std::max<std::size_t>(paths / samples, fewest_pixels_);
+      const std::size_t wanted = std::max<std::size_t>(paths / samples, fewest);
       const std::size_t first = next_pixel.fetch_add(wanted);
       if (first >= pixels) return;
       const std::size_t count = std::min(wanted, pixels - first);
@@ -158,7 +160,7 @@ class PassRenderer {
   }
 
   Prepare prepare_;
-  std::size_t fewest_pixels_;
+  std::size_t fewest_pixels_ = 1;
   const RenderSettings& settings_;
   const ProgressFunction& progress_;
   Film& film_;

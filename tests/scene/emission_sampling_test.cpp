@@ -66,7 +66,10 @@ Rendered render(const PathScene& scene, uint32_t pictures, const Way& way) {
   setup.factory = &factory;
   setup.max_scatterings = way.max_scatterings;
   setup.samples_emission = way.samples_emission;
-  for (uint32_t i = 0; i < pictures; ++i) setup.colors.push_back(factory.colors_of_sample(i));
+  const uint32_t block = factory.sets_per_block();
+  for (uint32_t set = 0; set < (pictures + block - 1) / block * block; ++set) {
+    setup.colors.push_back(factory.colors_of_set(set));
+  }
   SceneWavefront wavefront(setup);
   Rendered rendered;
   for (uint32_t i = 0; i < pictures; ++i) {

@@ -3,6 +3,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <mutex>
 #include <string>
@@ -14,12 +15,26 @@
 namespace freepath {
 namespace {
 
-/// The index in binary, mirrored at the point: [0, 1).
-double van_der_corput(uint32_t index) {
+/// Wavelengths of a block. What a quadrature over them misses is common to all pixels, and has to
+/// be small against the noise of the mean of a picture: 256 are, up to a thousand million paths
+/// under daylight, and cost next to nothing where walkers are shared. Where they are not, flights
+/// are walked in as many streams as there are sets, and small pictures have fewer.
+constexpr int kNodes = 1024;
+constexpr int kNodesOfManyPixels = 256;
+constexpr int kFewestNodes = 64;
+constexpr double kManyPixels = 65536;
+/// Sets whose voxels are copies of their own take memory, of which a block may have so much.
+constexpr uint32_t kFewestSets = 4;
+constexpr std::size_t kLargestBlock = std::size_t{256} << 20;  // [bytes]
+
+uint32_t reversed_bits(uint32_t word) {
   uint32_t reversed = 0;
-  for (int bit = 0; bit < 32; ++bit) reversed |= (index >> bit & 1U) << (31 - bit);
-  return reversed * 0x1p-32;
+  for (int bit = 0; bit < 32; ++bit) reversed |= (word >> bit & 1U) << (31 - bit);
+  return reversed;
 }
+
+/// The index in binary, mirrored at the point: [0, 1).
+double van_der_corput(uint32_t index) { return reversed_bits(index) * 0x1p-32; }
 
 /// Whether one path carries channels of different extinction.
 bool carries_colours(const WalkSettings& walk) {
@@ -64,7 +79,7 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
          kMaxChannels, wavelengths);
   }
   const SpectrumValues first =
-      mode == ColorMode::kRgb ? scene.spectra->in_rgb() : spectra_of_sample(0);
+      mode == ColorMode::kRgb ? scene.spectra->in_rgb() : spectra_of_set(0);
   for (const SceneMedium& medium : scene.media) {
     // Extinctions that are equal at the wavelengths of one sample may differ at those of others.
     const bool shares = mode == ColorMode::kRgb || medium.is_grey(*scene.spectra)
@@ -80,7 +95,7 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
     if (grey || mode == ColorMode::kRgb) {
       constant_[i] = std::move(walkers);
     } else {
-      depends_on_sample_ = true;
+      depends_on_wavelengths_ = true;
     }
   }
   sees_rgb_ = mode == ColorMode::kSpectral && paths_per_sample_ == 1 &&
@@ -91,7 +106,29 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
                                  : std::make_shared<const PathColors>(
                                        *this, scene.spectra->seen_in_rgb(),
                                        std::vector<std::shared_ptr<const MediumWalkers>>{});
+  sets_per_block_ = choose_sets_per_block();
   make_guides();
+}
+
+uint32_t ColorFactory::choose_sets_per_block() const {
+  if (mode_ == ColorMode::kRgb) return 1;
+  const double pixels = double(scene_.camera->width()) * scene_.camera->height();
+  int nodes = kNodes;
+  if (depends_on_wavelengths_) nodes = pixels < kManyPixels ? kFewestNodes : kNodesOfManyPixels;
+  auto sets = std::bit_ceil(static_cast<uint32_t>((nodes + wavelengths_ - 1) / wavelengths_));
+  std::size_t bytes = 0;
+  for (const SceneMedium& medium : scene_.media) bytes += medium.bytes_of_set(wavelengths_);
+  while (sets > kFewestSets && sets * bytes > kLargestBlock) sets /= 2;
+  return sets;
+}
+
+uint32_t ColorFactory::set_of(uint32_t pixel, uint32_t sample) const {
+  if (sets_per_block_ == 1) return sample;
+  const uint32_t block = sample / sets_per_block_;
+  // Of a stream that nothing else uses.
+  RandomStream random(walk_.seed, pixel, block, 0xFFFFFFFEU);
+  const uint32_t bits = reversed_bits(sample) ^ random.bits();
+  return block * sets_per_block_ + (bits >> (32 - std::countr_zero(sets_per_block_)));
 }
 
 void ColorFactory::make_guides() {
@@ -113,8 +150,9 @@ void ColorFactory::make_guides() {
   }
 }
 
-SpectrumValues ColorFactory::spectra_of_sample(uint32_t sample) const {
-  double u = shift_of(walk_.seed) + van_der_corput(sample) / wavelengths_;
+SpectrumValues ColorFactory::spectra_of_set(uint32_t set) const {
+  const double node = static_cast<double>(set % sets_per_block_) + van_der_corput(set / sets_per_block_);
+  double u = shift_of(walk_.seed) + node / (static_cast<double>(sets_per_block_) * wavelengths_);
   u -= std::floor(u);
   return scene_.spectra->at(sample_wavelengths<kMaxChannels>(
       u, WavelengthDensity::kVisible, static_cast<std::size_t>(wavelengths_)));
@@ -222,8 +260,8 @@ std::shared_ptr<const PathColors> ColorFactory::make(SpectrumValues spectra) con
   return std::make_shared<const PathColors>(*this, std::move(spectra), std::move(media));
 }
 
-std::shared_ptr<const PathColors> ColorFactory::colors_of_sample(uint32_t sample) const {
-  return mode_ == ColorMode::kRgb ? rgb_ : make(spectra_of_sample(sample));
+std::shared_ptr<const PathColors> ColorFactory::colors_of_set(uint32_t set) const {
+  return mode_ == ColorMode::kRgb ? rgb_ : make(spectra_of_set(set));
 }
 
 }  // namespace freepath

@@ -61,11 +61,14 @@ class PathColors {
   mutable std::map<MediumId, std::shared_ptr<const MediumWalkers>> combinations_;
 };
 
-/// Makes colours for the samples of a scene. In R, G, B all samples share them. In spectral mode a
-/// sample of every pixel has the same wavelengths: the first channel's run through a van der Corput
-/// sequence over 1/N of the spectrum's probability, shifted by the seed, and the others
-/// follow at equal distances of probability [Wilkie14]. So the wavelengths of 2^k samples are
-/// equidistant, and pictures have next to no noise of colour.
+/// Makes colours for the samples of a scene. In R, G, B all samples share them.
+///
+/// In spectral mode a path has N wavelengths at equal distances of probability [Wilkie14], and there
+/// are sets of them: K sets make a block, whose K·N wavelengths are equidistant, shifted by the seed.
+/// K samples of a pixel run through a block in an order of bits reversed and scrambled, which is
+/// random for each pixel: so the wavelengths of 2^k samples of a pixel are equidistant and pictures
+/// have next to no noise of colour, yet pixels are independent but for the error of a quadrature with
+/// K·N nodes. The next block lies between the nodes of the blocks before.
 class ColorFactory {
  public:
   /// @param scene must outlive this
@@ -73,12 +76,17 @@ class ColorFactory {
   /// @param wavelengths of a path in spectral mode, 1 to kMaxChannels
   ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths, const WalkSettings& walk);
 
-  std::shared_ptr<const PathColors> colors_of_sample(uint32_t sample) const;
+  /// Number of the set of wavelengths that a sample has; in R, G, B its own.
+  /// @param pixel of the whole picture
+  uint32_t set_of(uint32_t pixel, uint32_t sample) const;
+  /// Sets of a block, a power of two. Samples [K·b, K·(b + 1)) have sets of the same numbers.
+  uint32_t sets_per_block() const { return sets_per_block_; }
+  std::shared_ptr<const PathColors> colors_of_set(uint32_t set) const;
 
   /// Paths of a sample: 1, or one for each channel where a tracker gives each its own.
   int paths_per_sample() const { return paths_per_sample_; }
-  /// Whether samples differ in walkers, so that flights of different samples are walked apart.
-  bool depends_on_sample() const { return depends_on_sample_; }
+  /// Whether sets of wavelengths differ in walkers, so that their flights are walked apart.
+  bool depends_on_wavelengths() const { return depends_on_wavelengths_; }
   /// Directions towards the emission of a medium, null where there is none.
   const EmissionGuide* guide(MediumId medium) const {
     const auto number = static_cast<std::size_t>(medium);
@@ -112,14 +120,16 @@ class ColorFactory {
       MediumId combination, const std::vector<std::shared_ptr<const Medium>>& media) const;
   std::shared_ptr<const PathColors> make(SpectrumValues spectra) const;
   void make_guides();
-  SpectrumValues spectra_of_sample(uint32_t sample) const;
+  SpectrumValues spectra_of_set(uint32_t set) const;
+  uint32_t choose_sets_per_block() const;
 
   const PathScene& scene_;
   ColorMode mode_;
   int wavelengths_;
   WalkSettings walk_;
   int paths_per_sample_ = 1;
-  bool depends_on_sample_ = false;
+  bool depends_on_wavelengths_ = false;
+  uint32_t sets_per_block_ = 1;
   bool sees_rgb_ = false;
   /// Walkers of media that are the same at all wavelengths, null of others.
   std::vector<std::shared_ptr<const MediumWalkers>> constant_;

@@ -31,7 +31,9 @@ struct ScenePath {
   /// lights, whose integral over all wavelengths is known.
   Channels rgb;
 
-  Vec3f scattered_from{0};  ///< Where the direction was drawn.
+  /// Where the direction began: at the camera, a surface or a collision. Unlike `origin` it stays
+  /// where it is when the ray crosses a boundary.
+  Vec3f turned_at{0};
   float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
   float emission_share = 1;

@@ -172,6 +172,13 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
   return bound;
 }
 
+std::size_t SceneMedium::bytes_of_set(int wavelengths) const {
+  if (!colors_) return 0;
+  const std::size_t values =
+      colors_->sigma_a.size() + colors_->sigma_s.size() + colors_->radiance.size();
+  return values * sizeof(float) * static_cast<std::size_t>(wavelengths);
+}
+
 bool SceneMedium::is_grey(const SpectrumTable& table) const {
   return !colors_ && std::all_of(components_.begin(), components_.end(),
                                  [&](const SceneMediumComponent& component) {

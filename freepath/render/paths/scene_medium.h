@@ -81,6 +81,8 @@ class SceneMedium {
   }
   /// Scattering over extinction of a component, for pictures of it.
   Channels albedo(std::size_t component, const SpectrumValues& spectra) const;
+  /// Memory that `bind` takes for so many wavelengths, beside what all of them share.
+  std::size_t bytes_of_set(int wavelengths) const;
   /// What it fills [world].
   const Box3d& bounds() const { return bounds_; }
   /// Null where voxels depend on wavelengths.

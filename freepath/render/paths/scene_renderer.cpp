@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/render/pass_renderer.h"
@@ -11,9 +13,35 @@
 namespace freepath {
 namespace {
 
-/// Of a job whose samples need walkers of their own: their flights are walked apart, and fewer
-/// would leave lanes idle.
-constexpr std::size_t kPixelsOfSplitJobs = 1024;
+/// Paths of a set of wavelengths in a job whose sets need walkers of their own: their flights are
+/// walked apart, and fewer would leave lanes idle.
+constexpr std::size_t kPathsOfSet = 1024;
+/// But so many jobs there shall be, for all threads to have some.
+constexpr std::size_t kFewestJobs = 16;
+
+/// Pixels of a job of a picture that has so many.
+std::size_t fewest_pixels(const ColorFactory& factory, std::size_t pixels, uint32_t samples) {
+  if (!factory.depends_on_wavelengths()) return 1;
+  const std::size_t wanted = kPathsOfSet * factory.sets_per_block() / samples;
+  return std::max(kPathsOfSet, std::min(wanted, pixels / kFewestJobs));
+}
+
+/// Makes the colours of the sets that samples may have; those that are there already stay.
+void prepare_colors(SceneSetup& setup, uint32_t first_sample, uint32_t samples) {
+  const uint32_t block = setup.factory->sets_per_block();
+  const uint32_t first = first_sample / block * block;
+  const uint32_t count = (first_sample + samples - 1) / block * block + block - first;
+  std::vector<std::shared_ptr<const PathColors>> colors(count);
+  for (std::size_t i = 0; i < setup.colors.size(); ++i) {
+    const std::size_t set = setup.first_set + i;
+    if (set >= first && set < std::size_t{first} + count) colors[set - first] = setup.colors[i];
+  }
+  setup.colors = std::move(colors);
+  setup.first_set = first;
+  tbb::parallel_for(0U, count, [&](uint32_t i) {
+    if (!setup.colors[i]) setup.colors[i] = setup.factory->colors_of_set(first + i);
+  });
+}
 
 }  // namespace
 
@@ -44,15 +72,13 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   setup.seed = settings.walk.seed;
   setup.max_scatterings = settings.max_scatterings;
   setup.slots = std::max<std::size_t>(settings.batch, 1);
+  const std::size_t pixels = static_cast<std::size_t>(window.width) * window.height;
   const auto prepare = [&](uint32_t first, uint32_t count) {
-    setup.first_sample = first;
-    setup.colors.assign(count, nullptr);
-    tbb::parallel_for(0U, count,
-                      [&](uint32_t i) { setup.colors[i] = factory.colors_of_sample(first + i); });
+    prepare_colors(setup, first, count);
+    return fewest_pixels(factory, pixels, count);
   };
   PassRenderer<SceneWavefront> passes([&] { return SceneWavefront(setup); }, settings, progress,
-                                      result.film, prepare,
-                                      factory.depends_on_sample() ? kPixelsOfSplitJobs : 1);
+                                      result.film, prepare);
   passes.run();
   finish_result(passes, settings, result);
   return result;

@@ -124,7 +124,7 @@ void SceneWavefront::meet_surface(std::size_t slot) {
     const SpectrumValues& spectra = light_spectra(path, in_rgb);
     const LightSeen light =
         path.pdf > 0
-            ? scene_.lights->hit(path.scattered_from, *shape.light, hit.point, spectra)
+            ? scene_.lights->hit(path.turned_at, *shape.light, hit.point, spectra)
             : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction, spectra),
                         0};
     const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
@@ -195,7 +195,7 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
   path.is_coloured = true;  // equal at these wavelengths is not equal at all
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
-  path.scattered_from = position;
+  path.turned_at = position;
   const Departure departure = depart(path, hit, next->direction);
   set_media(path, departure.media);
   go_on(path, departure.origin, next->direction);
@@ -247,7 +247,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   const float u2 = random.uniform();
   const PhaseSample next = phase.sample(path.direction, u1, u2);
   path.pdf = next.pdf;
-  path.scattered_from = position;
+  path.turned_at = position;
   go_on(path, position, next.direction);
   if (guide != nullptr) {
     path.emission_share = next.pdf / (next.pdf + guide->pdf(position, next.direction));

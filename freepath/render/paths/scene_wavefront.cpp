@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include "freepath/tracking/reference/stop_scope.h"
 
@@ -48,6 +49,7 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
   layers_.begin(film, results_.size());
   spectra_.assign(film.buckets().count > 0 ? results_.size() : 0, Channels());
   window_ = film.window();
+  set_order(job);
   job_counts_ = {};
   const std::size_t total = job.pixels * job.samples * setup_.factory->paths_per_sample();
   job_counts_.paths = total;
@@ -75,19 +77,38 @@ bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<b
   return true;
 }
 
+void SceneWavefront::set_order(const PathJob& job) {
+  const std::size_t total = job.pixels * job.samples;
+  order_.resize(total);
+  std::iota(order_.begin(), order_.end(), uint32_t{0});
+  if (!setup_.factory->depends_on_wavelengths()) return;
+  // Flights of one set are walked together.
+  places_.assign(setup_.colors.size() + 1, 0);
+  sets_.resize(total);
+  for (std::size_t i = 0; i < total; ++i) {
+    const auto pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + i / job.samples));
+    const uint32_t sample = job.first_sample + static_cast<uint32_t>(i % job.samples);
+    sets_[i] = setup_.factory->set_of(pixel, sample) - setup_.first_set;
+    ++places_[sets_[i] + 1];
+  }
+  std::partial_sum(places_.begin(), places_.end(), places_.begin());
+  for (std::size_t i = 0; i < total; ++i) {
+    order_[places_[sets_[i]]++] = static_cast<uint32_t>(i);
+  }
+}
+
 void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePath& path) {
   path = {};
-  // All pixels of a sample follow each other, since they may share walkers.
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
-  const std::size_t place = number / per_sample;
+  const std::size_t place = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
-  const std::size_t pixel = place % job.pixels;
-  const auto sample = static_cast<uint32_t>(place / job.pixels);
+  const std::size_t pixel = place / job.samples;
+  const auto sample = static_cast<uint32_t>(place % job.samples);
   path.result = static_cast<uint32_t>((pixel * job.samples + sample) * per_sample) + channel;
   path.pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + pixel));
   const uint32_t sample_number = job.first_sample + sample;
   path.sample_key = sample_number * static_cast<uint32_t>(per_sample) + channel;
-  path.colors = setup_.colors[sample_number - setup_.first_sample].get();
+  path.colors = &colors_of(path.pixel, sample_number);
   const int channels = path.colors->spectra.channels();
   if (per_sample > 1) {
     path.channel = path.hero = channel;
@@ -109,7 +130,7 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
   if (scene_.camera->has_lens()) lens = numbers.pair(kLensDimension);
   const CameraRay ray = scene_.camera->ray(x, y, lens[0], lens[1]);
   path.throughput *= filtered.weight;
-  path.origin = Vec3f(ray.origin - scene_.origin);
+  path.origin = path.turned_at = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;
   path.media = scene_.camera_media;
   path.medium = camera_medium_;
@@ -226,7 +247,7 @@ void SceneWavefront::escape(ScenePath& path) {
   }
   const bool in_rgb = sees_rgb(path);
   const LightSeen light =
-      scene_.lights->escape(path.scattered_from, path.direction, light_spectra(path, in_rgb));
+      scene_.lights->escape(path.turned_at, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
   const Channels seen = light_throughput(path, in_rgb) * light.radiance * share;
@@ -282,7 +303,8 @@ void SceneWavefront::add_spectrum(const PathJob& job, std::size_t sample, Film& 
   Channels radiance;
   for (std::size_t c = 0; c < per_sample; ++c) radiance += spectra_[sample * per_sample + c];
   const uint32_t number = job.first_sample + static_cast<uint32_t>(sample % job.samples);
-  const SpectrumValues& values = setup_.colors[number - setup_.first_sample]->spectra;
+  const auto pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + sample / job.samples));
+  const SpectrumValues& values = colors_of(pixel, number).spectra;
   // In the light's units, which the colour matching of our observer takes out.
   constexpr auto kLightUnit = static_cast<float>(1 / kLuminousIntegral);
   film.add_spectrum(job.first_pixel + sample / job.samples,

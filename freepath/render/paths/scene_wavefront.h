@@ -32,9 +32,9 @@ struct SceneSetup {
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
   std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
-  /// Of the samples of a pass, from first_sample on.
+  /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const PathColors>> colors;
-  uint32_t first_sample = 0;
+  uint32_t first_set = 0;
 };
 
 /// Traces paths through a scene: to the next surface or collision, scatter with next-event
@@ -50,7 +50,13 @@ class SceneWavefront {
   const PathWavefront::Counts& counts() const { return counts_; }
 
  private:
+  /// Fills order_.
+  void set_order(const PathJob& job);
   void start_path(const PathJob& job, std::size_t number, ScenePath& path);
+  /// @param pixel of the picture
+  const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
+    return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
+  }
   /// Sends all paths on: those in vacuum at once, others by their walkers.
   void fly();
   void fly_in_vacuum(std::size_t slot);
@@ -114,6 +120,9 @@ class SceneWavefront {
   FlightStream flights_;
   ShadowTracer shadows_;
   EmissionTracer emissions_;
+  /// The job's samples (pixel · samples + sample) in the order in which they start.
+  std::vector<uint32_t> order_;
+  std::vector<uint32_t> sets_, places_;  // for that order
   std::vector<PathSample> results_;
   std::vector<Channels> spectra_;  // of the same paths, if the film records them
   LayerRecorder layers_;           // of the results
