@@ -220,6 +220,13 @@ Difference compare(const DiffOptions& options) {
     fail("{} has {}x{} pixels and {} has {}x{}; only images of one size can be compared", a.name,
          result.width, result.height, b.name, b.image->width, b.image->height);
   }
+  if (b.image && !are_same(a.image->chromaticities.value_or(RgbChromaticities()),
+                           b.image->chromaticities.value_or(RgbChromaticities()))) {
+    fail(
+        "{} and {} have R, G and B of different colour spaces (their chromaticities differ); "
+        "convert one of them first",
+        a.name, b.name);
+  }
   const std::vector<std::string> names = chosen_channels(options, *a.image);
   if (!b.image && b.constant.size() != 1 && b.constant.size() != names.size()) {
     fail("{} has {} values, but {} channels are compared: {}", b.name, b.constant.size(),

@@ -75,7 +75,8 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   ScenePlan plan;
   plan.file = options.volumes.files[0];
   plan.settings = read_run_settings(options);
-  // Noise that pixels share would be in the way of comparisons.
+  // Trackers are compared, which three channels do as well as wavelengths, with less noise of
+  // colour.
   const bool is_rgb = options.color.empty() && command.count("--wavelengths") == 0;
   plan.color = is_rgb ? ColorMode::kRgb : read_color(options);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
@@ -106,7 +107,8 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   Subject& subject = loaded.subject;
   subject.name = names_of(options.volumes.files);
   subject.digest = digest_of(command, built->files);
-  subject.shares_noise = plan.color == ColorMode::kSpectral;
+  const RgbColorSpace& space = built->scene.spectra->space();
+  subject.chromaticities = RgbChromaticities{space.primaries(), space.white()};
   subject.width = window.width;
   subject.height = window.height;
   subject.render = [built, color = plan.color](const RenderSettings& settings,

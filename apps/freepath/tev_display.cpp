@@ -16,6 +16,7 @@
 #include <charconv>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -145,8 +146,12 @@ void TevDisplay::give_up(const std::string& reason) {
   socket_ = -1;
 }
 
-void TevDisplay::show(const Image& image) {
+void TevDisplay::show(const Image& picture) {
   if (socket_ < 0) return;
+  // The viewer is told numbers alone, which it takes for sRGB's.
+  std::optional<Image> converted;
+  if (picture.chromaticities) converted = in_srgb(picture);
+  const Image& image = converted ? *converted : picture;
   if (!created_) create(image);
   const int rows = std::max(1, kValuesPerPacket / (image.width * kChannelsShown));
   for (int first = 0; first < image.height && socket_ >= 0; first += rows) {

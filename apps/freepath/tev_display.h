@@ -32,7 +32,7 @@ class TevDisplay {
   /// Sends R, G, B and A as they are.
   void show(const Film& film) { show(film.to_image({})); }
   /// The same of a picture's first four channels.
-  void show(const Image& image);
+  void show(const Image& picture);
 
  private:
   void connect(const DisplayAddress& address);

@@ -294,11 +294,9 @@ void Experiment::evaluate() {
     result_.tests += result.bias.tests();
   }
   result_.level = settings_.level;
-  result_.shares_noise = subject_.shares_noise;
   result_.threshold = family_wise_threshold(settings_.level, result_.tests);
   for (ConfigurationResult& result : result_.configurations) {
-    result.verdict =
-        subject_.shares_noise ? BiasVerdict::kUndecided : result.bias.verdict(result_.threshold);
+    result.verdict = result.bias.verdict(result_.threshold);
   }
   find_efficiencies();
 }

@@ -89,7 +89,6 @@ struct Comparison {
   double level = 0;                       ///< ComparisonSettings::level
   double threshold = 0;                   ///< Largest |z| that chance explains.
   std::size_t tests = 0;                  ///< How many it is for.
-  bool shares_noise = false;              ///< Subject::shares_noise: then no bias test is decided.
   double seconds = 0;                     ///< In all, with the reference.
 
   const Reference& reference(std::size_t configuration) const {

@@ -284,12 +284,6 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
                     "pictures are not to be trusted.",
                     overflows, result.name));
   }
-  if (comparison.shares_noise) {
-    findings.emplace_back(
-        "Pixels share the wavelengths of a sample, and the noise of colour with them, which no "
-        "pixel's variance knows: bias tests are not decided, and MSE holds some of the "
-        "reference's noise. Take --color rgb to have both.");
-  }
   for (const Reference& reference : comparison.references) {
     if (reference.variance_known) continue;
     findings.emplace_back(

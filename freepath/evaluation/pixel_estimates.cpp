@@ -54,6 +54,7 @@ void check_finite(const std::vector<float>& values, int width, const std::string
 
 PixelEstimates estimates_of(const Image& image, const std::string& name, bool& variance_known) {
   PixelEstimates estimates{.width = image.width, .height = image.height};
+  estimates.chromaticities = image.chromaticities;
   estimates.mean = copy_channels(image, colour_channels(image, name));
   check_finite(estimates.mean, image.width, name);
   const auto variances = channels_of(image, "variance.");
@@ -97,6 +98,7 @@ std::vector<float> colours_of(const Film& film) {
 
 Image to_image(const PixelEstimates& estimates) {
   Image image{.width = estimates.width, .height = estimates.height};
+  image.chromaticities = estimates.chromaticities;
   image.channels = {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"};
   for (std::size_t pixel = 0; pixel < estimates.pixel_count(); ++pixel) {
     const auto begin = static_cast<std::ptrdiff_t>(3 * pixel);

@@ -2,6 +2,7 @@
 /// @file A picture as a set of estimates: means, how far they are to be trusted, and sums of them.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace freepath {
 /// R, G and B of every pixel, row after row, and the variance of each.
 struct PixelEstimates {
   int width = 0, height = 0;
+  /// Of the space of R, G and B, where it is not sRGB's.
+  std::optional<RgbChromaticities> chromaticities = {};
   std::vector<float> mean = {};      ///< Three a pixel.
   std::vector<float> variance = {};  ///< Of the means; three a pixel.
   std::vector<float> samples = {};   ///< One a pixel.

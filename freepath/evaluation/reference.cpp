@@ -28,6 +28,10 @@ Reference read_reference(const std::string& file, const Subject& subject) {
          image.width, image.height, subject.width, subject.height, image.width, image.height);
   }
   reference.estimates = estimates_of(image, file, reference.variance_known);
+  if (!are_same(reference.estimates.chromaticities.value_or(RgbChromaticities()),
+                subject.chromaticities.value_or(RgbChromaticities()))) {
+    fail("{}: the reference and the pictures have R, G and B of different colour spaces", file);
+  }
   const auto& samples = reference.estimates.samples;
   const auto without = std::count(samples.begin(), samples.end(), 0.0F);
   if (without > 0) {

@@ -2,8 +2,10 @@
 /// @file What estimators are compared on.
 
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "freepath/base/rgb_primaries.h"
 #include "freepath/render/renderer.h"
 
 namespace freepath {
@@ -14,9 +16,8 @@ struct Subject {
   /// Of everything that the exact picture depends on: the same digest, the same picture.
   std::string digest;
   int width = 0, height = 0;  ///< [pixels]
-  /// Whether noise is common to many pixels, such as that of wavelengths which all pixels of a
-  /// sample share: then what pixels know of their variances says too little of a mean's.
-  bool shares_noise = false;
+  /// Of the space of its pictures' R, G and B, where it is not sRGB's.
+  std::optional<RgbChromaticities> chromaticities = {};
   /// Renders it. As `render`; of the settings' layers all but variance, samples and look-ups are
   /// left to it.
   std::function<RenderResult(const RenderSettings&, const ProgressFunction&)> render = {};

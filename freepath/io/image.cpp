@@ -25,6 +25,28 @@ std::array<int, 3> colour_channels(const Image& image, const std::string& name) 
   fail("{}: no channels R, G, B (or Y) among {}", name, fmt::join(image.channels, ", "));
 }
 
+std::optional<Matrix3d> matrix_to_srgb(const Image& image) {
+  if (!image.chromaticities) return {};
+  return rgb_to_rgb_matrix(*image.chromaticities, RgbChromaticities());
+}
+
+Image in_srgb(Image image) {
+  const auto matrix = matrix_to_srgb(image);
+  image.chromaticities.reset();
+  const auto r = find_channel(image, "R");
+  const auto g = find_channel(image, "G");
+  const auto b = find_channel(image, "B");
+  if (!matrix || !r || !g || !b) return image;
+  for (std::size_t i = 0; i < image.values.size(); i += image.channels.size()) {
+    float* const pixel = image.values.data() + i;
+    const Vec3d rgb = Vec3d(pixel[*r], pixel[*g], pixel[*b]) * *matrix;
+    pixel[*r] = static_cast<float>(rgb.x);
+    pixel[*g] = static_cast<float>(rgb.y);
+    pixel[*b] = static_cast<float>(rgb.z);
+  }
+  return image;
+}
+
 float srgb_from_linear(float linear) {
   return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }

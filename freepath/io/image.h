@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "freepath/base/rgb_primaries.h"
+
 namespace freepath {
 
 /// A value of an image's metadata.
@@ -26,6 +28,9 @@ struct Image {
   /// Where it lies in a larger picture that it is a part of, and the size of that [pixels]; a size
   /// of 0 is its own.
   int x = 0, y = 0, full_width = 0, full_height = 0;
+
+  /// Of the space of R, G and B, where it is not sRGB's.
+  std::optional<RgbChromaticities> chromaticities = {};
 
   std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
   /// The values of a pixel, one for each channel.
@@ -45,6 +50,14 @@ std::optional<int> find_channel(const Image& image, std::string_view name);
 /// @param name what to call the image in a message
 /// @throws Error that lists the channels, if there is no colour among them
 std::array<int, 3> colour_channels(const Image& image, const std::string& name);
+
+/// The matrix that takes an image's R, G, B to sRGB's; none where they are sRGB's. A colour stays
+/// the same light: no white is adapted to another.
+std::optional<Matrix3d> matrix_to_srgb(const Image& image);
+
+/// The image with R, G and B in sRGB's primaries, where negative values are colours that these
+/// can't mix. All other channels stay.
+Image in_srgb(Image image);
 
 /// Reads an image: the first part of the file, its data window. Formats that store sRGB values
 /// (PNG, JPEG) are made linear, their alpha left as it is.
@@ -79,7 +92,8 @@ enum class ExrPrecision {
 void write_exr(const std::string& path, const Image& image,
                ExrPrecision precision = ExrPrecision::kFloat);
 
-/// The bytes of a PNG file of the colour: 8 bits, sRGB transfer function, clipped to [0, 1].
+/// The bytes of a PNG file of the colour: 8 bits, sRGB's primaries and transfer function, clipped
+/// to [0, 1].
 /// @param exposure values are multiplied by 2^exposure first [stops]
 /// @param name what to call the image in a message
 /// @throws Error if it can't be encoded

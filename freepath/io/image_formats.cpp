@@ -9,9 +9,12 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "freepath/base/memory_budget.h"
 #include "freepath/base/version.h"
@@ -117,6 +120,34 @@ bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, std::vector
   return true;
 }
 
+constexpr const char* kChromaticities = "chromaticities";
+/// Of red, green, blue and white, x and y each.
+const OIIO::TypeDesc kEightFloats(OIIO::TypeDesc::FLOAT, 8);
+
+std::optional<RgbChromaticities> chromaticities_of(const OIIO::ImageSpec& spec) {
+  std::array<float, 8> v{};
+  if (!spec.getattribute(kChromaticities, kEightFloats, v.data())) return {};
+  const RgbChromaticities given{{{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}}, {v[6], v[7]}};
+  // What makes no space is left out: primaries on a line, or a white without luminance.
+  const auto& [red, green, blue] = given.primaries;
+  const double area = (green.x - red.x) * (blue.y - red.y) - (blue.x - red.x) * (green.y - red.y);
+  const bool valid = std::abs(area) > 1e-4 && given.white.y > 1e-3;
+  if (!valid || are_same(given, RgbChromaticities())) return {};
+  return given;
+}
+
+void set_chromaticities(OIIO::ImageSpec& spec, const Image& image) {
+  if (!image.chromaticities) return;
+  std::array<float, 8> v{};
+  std::size_t i = 0;
+  const auto& [primaries, white] = *image.chromaticities;
+  for (const Chromaticity& c : {primaries.red, primaries.green, primaries.blue, white}) {
+    v[i++] = static_cast<float>(c.x);
+    v[i++] = static_cast<float>(c.y);
+  }
+  spec.attribute(kChromaticities, kEightFloats, v.data());
+}
+
 std::string read_stored(const std::string& path, uint64_t stored, Image& image, bool& srgb,
                         int& alpha) {
   OIIO::ImageSpec wish;
@@ -140,6 +171,7 @@ std::string read_stored(const std::string& path, uint64_t stored, Image& image, 
   image.metadata = metadata_of(spec);
   srgb = spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
   alpha = spec.alpha_channel;
+  if (!srgb) image.chromaticities = chromaticities_of(spec);
   if (!read_rows(*input, spec, image.values)) {
     return "can't read the image: " + trimmed(input->geterror());
   }
@@ -157,6 +189,7 @@ std::string write_values(const std::string& path, const Image& image, const floa
   if (image.full_height > 0) spec.full_height = image.full_height;
   spec.attribute("compression", "zip");
   set_metadata(spec, image);
+  set_chromaticities(spec, image);
   return encode(path, "openexr", spec, OIIO::TypeFloat, values);
 }
 

@@ -125,9 +125,13 @@ std::vector<uint8_t> srgb_pixels(const Image& image, double exposure, const std:
   const auto scale = static_cast<float>(std::exp2(exposure));
   std::vector<uint8_t> bytes;
   bytes.reserve(image.pixel_count() * 3);
+  const auto matrix = matrix_to_srgb(image);
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-    for (const int channel : colour) {
-      const float value = image.values[pixel * image.channels.size() + channel] * scale;
+    Vec3d rgb;
+    for (int c = 0; c < 3; ++c) rgb[c] = image.values[pixel * image.channels.size() + colour[c]];
+    if (matrix) rgb = rgb * *matrix;
+    for (int c = 0; c < 3; ++c) {
+      const float value = static_cast<float>(rgb[c]) * scale;
       // The order of the arguments makes a NaN black.
       const float srgb = srgb_from_linear(std::min(1.0F, std::max(0.0F, value)));
       bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * srgb)));

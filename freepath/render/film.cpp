@@ -195,6 +195,7 @@ Image Film::to_image(LayerSet layers) const {
   image.y = window_.y;
   image.full_width = window_.full_width;
   image.full_height = window_.full_height;
+  image.chromaticities = chromaticities_;
   image.channels = {"R", "G", "B", "A"};
   std::vector<Layer> chosen;
   for (const LayerInfo& info : layer_infos()) {

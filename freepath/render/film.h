@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,11 @@ class Film {
   LayerSet layers() const { return layers_; }
   const WavelengthBuckets& buckets() const { return buckets_; }
   static std::size_t bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets = {});
+
+  /// Of the space of R, G and B; sRGB's where none are set. Its pictures carry them.
+  void set_chromaticities(const std::optional<RgbChromaticities>& chromaticities) {
+    chromaticities_ = chromaticities;
+  }
 
   /// Adds the next sample of a pixel.
   ///
@@ -144,6 +150,7 @@ class Film {
   void put_layer(Layer layer, std::size_t pixel, std::vector<float>& values) const;
 
   PixelWindow window_;
+  std::optional<RgbChromaticities> chromaticities_;
   LayerSet layers_;
   std::vector<Pixel> pixels_;
   int sums_per_pixel_ = 0;  // in doubles

@@ -20,9 +20,4 @@ Chromaticity chromaticity_of(const Vec3d& xyz) {
   return {xyz.x / sum, xyz.y / sum};
 }
 
-Vec3d xyz_of(const Chromaticity& chromaticity) {
-  const auto [x, y] = chromaticity;
-  return {x / y, 1, (1 - x - y) / y};
-}
-
 }  // namespace freepath

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "freepath/base/rgb_primaries.h"
 #include "freepath/base/vector.h"
 #include "freepath/spectra/cie_1931_table.h"
 
@@ -56,14 +57,6 @@ double luminance_of(const Spectrum& spectrum) {
   return observe(spectrum).y;
 }
 
-/// A colour without its luminance: x = X / (X + Y + Z), and y likewise.
-struct Chromaticity {
-  double x = 0, y = 0;
-};
-
 Chromaticity chromaticity_of(const Vec3d& xyz);
-
-/// X, Y, Z of a chromaticity with Y = 1.
-Vec3d xyz_of(const Chromaticity& chromaticity);
 
 }  // namespace freepath

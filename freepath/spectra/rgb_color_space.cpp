@@ -12,7 +12,7 @@
 namespace freepath {
 namespace {
 
-constexpr RgbPrimaries kRec709 = {{0.640, 0.330}, {0.300, 0.600}, {0.150, 0.060}};
+constexpr RgbPrimaries kRec709 = RgbChromaticities().primaries;
 constexpr RgbPrimaries kP3 = {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}};
 constexpr RgbPrimaries kRec2020 = {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}};
 constexpr RgbPrimaries kAcesAp0 = {{0.7347, 0.2653}, {0.0000, 1.0000}, {0.0001, -0.0770}};
@@ -41,17 +41,6 @@ std::array<Vec3d, RgbColorSpace::kNodes> reflectance_weights_of(const LinearSpec
 }
 
 }  // namespace
-
-Matrix3d rgb_to_xyz_matrix(const RgbPrimaries& primaries, const Chromaticity& white) {
-  // With z = 1 - x - y in place of X, Y, Z there is no division by the y of a primary, which is
-  // negative in the case of ACES.
-  const auto row = [](const Chromaticity& c) { return Vec3d(c.x, c.y, 1 - c.x - c.y); };
-  const Vec3d red = row(primaries.red), green = row(primaries.green), blue = row(primaries.blue);
-  const Matrix3d unscaled(red.x, red.y, red.z, green.x, green.y, green.z, blue.x, blue.y, blue.z);
-  const Vec3d amounts = xyz_of(white) * unscaled.inverse(true);
-  const Vec3d r = red * amounts.x, g = green * amounts.y, b = blue * amounts.z;
-  return {r.x, r.y, r.z, g.x, g.y, g.z, b.x, b.y, b.z};
-}
 
 RgbColorSpace::RgbColorSpace(std::string name, const RgbPrimaries& primaries,
                              const LinearSpectrum& illuminant)

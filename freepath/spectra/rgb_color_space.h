@@ -1,32 +1,20 @@
 #pragma once
 /// @file Linear RGB colour spaces.
 
-#include <Imath/ImathMatrix.h>
-
 #include <array>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "freepath/base/rgb_primaries.h"
 #include "freepath/base/vector.h"
 #include "freepath/spectra/cie_observer.h"
 #include "freepath/spectra/linear_spectrum.h"
 
 namespace freepath {
 
-/// For vectors as rows, as all matrices of the project: `xyz = rgb * rgb_to_xyz`.
-using Matrix3d = Imath::M33d;
-
 class ReflectanceTable;
-
-/// Chromaticities of the three colours that a space mixes.
-struct RgbPrimaries {
-  Chromaticity red, green, blue;
-};
-
-/// The matrix from RGB to XYZ that makes (1, 1, 1) the white point with Y = 1.
-Matrix3d rgb_to_xyz_matrix(const RgbPrimaries& primaries, const Chromaticity& white);
 
 /// A linear RGB space with the illuminant under which its whites are seen.
 ///

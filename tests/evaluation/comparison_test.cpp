@@ -66,17 +66,6 @@ TEST(Comparison, TellsBiasedMethodsFromUnbiasedOnes) {
   EXPECT_NE(findings.back().find("ray-marching:step=24"), std::string::npos) << findings.back();
 }
 
-// Where pixels have noise in common, nobody can tell from what they know of their variances.
-TEST(Comparison, DecidesNothingWhereNoiseIsShared) {
-  Subject subject = small_subject();
-  subject.shares_noise = true;
-  ComparisonSettings settings = settings_for({"delta"});
-  settings.samples = 8;
-  const Comparison comparison = compare(subject, settings);
-  EXPECT_EQ(comparison.configurations[0].verdict, BiasVerdict::kUndecided);
-  EXPECT_NE(findings_of(comparison).back().find("--color rgb"), std::string::npos);
-}
-
 TEST(Comparison, HoldsForChromaticMedia) {
   const Comparison comparison = compare(
       small_subject(true), settings_for({"delta", "spectral", "spectral-decomposition",

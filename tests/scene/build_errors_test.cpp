@@ -228,7 +228,7 @@ const DoubtfulScene kDoubtful[] = {
     {"Film \"rgb\" \"float cropwindow\" [ 0 2 0 1 ]\nWorldBegin", "1:12",
      "'cropwindow' reaches beyond the film"},
     {"Film \"rgb\" \"float maxcomponentvalue\" 10\nWorldBegin", "1:12", "would bias"},
-    {"Film \"rgb\" \"string sensor\" \"canon_eos_100d\"\nWorldBegin", "1:12", "no sensor"},
+    {"Film \"rgb\" \"string sensor\" \"canon_eos_100d\"\nWorldBegin", "1:12", "an ideal camera"},
     {"Sampler \"pmj02bn\"\nWorldBegin", "1:1", "padded Sobol' points"},
     {"Sampler \"sobol\" \"integer pixelsample\" 3\nWorldBegin", "1:17", "'pixelsamples'?"},
     {"PixelFilter \"box\" \"float radius\" 3\nWorldBegin", "1:19", "did you mean 'xradius'?"},
@@ -301,6 +301,8 @@ TEST(BuildPicture, ExposureIsShutterTimesIso) {
   EXPECT_FLOAT_EQ(exposure(""), 1);
   EXPECT_FLOAT_EQ(exposure(R"(Camera "perspective" "float shutterclose" 0.25)"), 0.25F);
   EXPECT_FLOAT_EQ(exposure(R"(Film "rgb" "float iso" 300)"), 3);
+  EXPECT_FLOAT_EQ(exposure(R"(Film "rgb" "float iso" 300 "float exposuretime" 0.5)"), 1.5F);
+  EXPECT_FLOAT_EQ(exposure(R"(Film "rgb" "float iso" 300 "float imagingratio" 0.125)"), 0.125F);
   EXPECT_FLOAT_EQ(exposure(R"(Camera "perspective" "float shutteropen" 0.5 Film "rgb" )"
                            R"("float iso" 400)"),
                   2);

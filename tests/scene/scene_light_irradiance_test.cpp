@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -69,6 +72,25 @@ TEST(SceneIrradiance, OfADiskAboveItsCentre) {
   const double area = std::numbers::pi * 1.5 * 1.5;
   expect_irradiance("power", 0, disk(R"("float power" 30)"),
                     grey(30 / (std::numbers::pi * area) * form), 2048);
+}
+
+// A light of alpha 0 shines and is not seen, nor does it cast a shadow, be it there or behind.
+TEST(SceneIrradiance, OfAnInvisibleDiskIsThatOfADisk) {
+  const double form = std::numbers::pi * 2.25 / (4 + 2.25);
+  const auto disk = [](const std::string& light, double z, const std::string& alpha) {
+    return fmt::format(
+        "AttributeBegin {} ReverseOrientation Translate 0 0 {} Shape \"disk\" \"float radius\" 1.5 "
+        "\"float alpha\" {} AttributeEnd\n",
+        light, z, alpha);
+  };
+  const std::string lamp = "AreaLightSource \"diffuse\" \"rgb L\" [ 1 2 3 ]";
+  const std::array<double, 3> irradiance{form, 2 * form, 3 * form};
+  expect_irradiance("invisible", 0, disk(lamp, 2, "0"), irradiance, 2048);
+  // In front of another, and a shape that shines not; the camera is at 0.5.
+  expect_irradiance("in front", 0,
+                    disk(lamp, 2, "1") + disk("", 0.25, "0") + disk("", 1, "0") +
+                        disk("AreaLightSource \"diffuse\" \"rgb L\" [ 0 0 0 ]", 0.3, "0"),
+                    irradiance, 2048);
 }
 
 TEST(SceneIrradiance, OfADiskThatShinesAwayIsNothing) {

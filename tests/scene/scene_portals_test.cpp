@@ -1,5 +1,5 @@
-// Portals looked through: from the camera, in a mirror and across boundaries, wherever the scene has
-// its centre.
+// Portals looked through: from the camera, in a mirror and across boundaries, wherever the scene
+// has its centre.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@ constexpr double kFarSpheres[] = {-3.3, -13, -1003, 1000};
 
 /// A portal of 1.6 x 2.4 at z = 2, open towards -z, before a white sky; the camera is at z = -3.
 std::string portal_scene(double look_at, double far_sphere, const std::string& world) {
-  return kUnlimited + film(64) + fmt::format(R"(
+  return kUnlimited + film(64) +
+         fmt::format(R"(
     LookAt 0 0 -3  0 0 {}  0 1 0
     Camera "perspective" "float fov" 90
     WorldBegin
@@ -30,7 +31,7 @@ std::string portal_scene(double look_at, double far_sphere, const std::string& w
       Shape "sphere" "float radius" 0.1
     AttributeEnd
     )",
-                                             look_at, far_sphere) +
+                     look_at, far_sphere) +
          world;
 }
 

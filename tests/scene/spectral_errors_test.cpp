@@ -114,9 +114,10 @@ TEST(SpectralErrors, OfMeansAreNotMoreThanStated) {
 
 // Where paths make the noise, errors are what is stated, of pixels and of means.
 TEST(SpectralErrors, AreAsStatedWhereNoiseIsNotOfColour) {
-  const Spread spread = spread_of(
-      lit_cube(R"("rgb L" [ 0.4 0.7 1 ])", R"("rgb sigma_a" [ 0.9 1 1.1 ] "rgb sigma_s" [ 9 9 9 ])"),
-      32, 64);
+  const Spread spread =
+      spread_of(lit_cube(R"("rgb L" [ 0.4 0.7 1 ])",
+                         R"("rgb sigma_a" [ 0.9 1 1.1 ] "rgb sigma_s" [ 9 9 9 ])"),
+                32, 64);
   const int green = 1;
   EXPECT_GT(spread.p_value(green), 1e-3) << spread.ratio(green);
   EXPECT_LT(spread.p_value(green), 1 - 1e-3) << spread.ratio(green);

@@ -151,7 +151,8 @@ void ColorFactory::make_guides() {
 }
 
 SpectrumValues ColorFactory::spectra_of_set(uint32_t set) const {
-  const double node = static_cast<double>(set % sets_per_block_) + van_der_corput(set / sets_per_block_);
+  const double node =
+      static_cast<double>(set % sets_per_block_) + van_der_corput(set / sets_per_block_);
   double u = shift_of(walk_.seed) + node / (static_cast<double>(sets_per_block_) * wavelengths_);
   u -= std::floor(u);
   return scene_.spectra->at(sample_wavelengths<kMaxChannels>(

@@ -63,12 +63,12 @@ class PathColors {
 
 /// Makes colours for the samples of a scene. In R, G, B all samples share them.
 ///
-/// In spectral mode a path has N wavelengths at equal distances of probability [Wilkie14], and there
-/// are sets of them: K sets make a block, whose K·N wavelengths are equidistant, shifted by the seed.
-/// K samples of a pixel run through a block in an order of bits reversed and scrambled, which is
-/// random for each pixel: so the wavelengths of 2^k samples of a pixel are equidistant and pictures
-/// have next to no noise of colour, yet pixels are independent but for the error of a quadrature with
-/// K·N nodes. The next block lies between the nodes of the blocks before.
+/// In spectral mode a path has N wavelengths at equal distances of probability [Wilkie14], and
+/// there are sets of them: K sets make a block, whose K·N wavelengths are equidistant, shifted by
+/// the seed. K samples of a pixel run through a block in an order of bits reversed and scrambled,
+/// which is random for each pixel: so the wavelengths of 2^k samples of a pixel are equidistant and
+/// pictures have next to no noise of colour, yet pixels are independent but for the error of a
+/// quadrature with K·N nodes. The next block lies between the nodes of the blocks before.
 class ColorFactory {
  public:
   /// @param scene must outlive this

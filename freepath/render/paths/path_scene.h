@@ -49,6 +49,8 @@ struct PathScene {
   std::optional<SceneCamera> camera;
   MediaSet camera_media;
   float exposure_scale = 1;  ///< What the film multiplies radiance by.
+  /// From R, G, B of the light to those of the film, before they are scaled: the balance of white.
+  Imath::M33f white_balance;
   PixelFilter filter;
   SampleKind samples = SampleKind::kSobol;
   /// Of each medium: whether no surface passes through its bounds and all of them are filled with

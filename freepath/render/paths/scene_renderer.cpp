@@ -65,6 +65,11 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
       .film = Film(window, settings.layers, spectral ? settings.buckets : WavelengthBuckets{}),
       .free_paths = {},
       .shadow_rays = {}};
+  const RgbColorSpace& space = scene.spectra->space();
+  const RgbChromaticities chromaticities{space.primaries(), space.white()};
+  if (!are_same(chromaticities, RgbChromaticities())) {
+    result.film.set_chromaticities(chromaticities);
+  }
   const ColorFactory factory(scene, mode, settings.wavelengths, settings.walk);
   SceneSetup setup;
   setup.scene = &scene;

@@ -272,7 +272,7 @@ void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albe
 Spectrum SceneWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
                                 const Channels& rgb) const {
   const Vec3f sum = path.colors->spectra.to_rgb(radiance) + Vec3f(rgb[0], rgb[1], rgb[2]);
-  return to_spectrum(sum * scene_.exposure_scale);
+  return to_spectrum(sum * scene_.white_balance * scene_.exposure_scale);
 }
 
 Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
@@ -303,7 +303,8 @@ void SceneWavefront::add_spectrum(const PathJob& job, std::size_t sample, Film& 
   Channels radiance;
   for (std::size_t c = 0; c < per_sample; ++c) radiance += spectra_[sample * per_sample + c];
   const uint32_t number = job.first_sample + static_cast<uint32_t>(sample % job.samples);
-  const auto pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + sample / job.samples));
+  const auto pixel =
+      static_cast<uint32_t>(window_.in_picture(job.first_pixel + sample / job.samples));
   const SpectrumValues& values = colors_of(pixel, number).spectra;
   // In the light's units, which the colour matching of our observer takes out.
   constexpr auto kLightUnit = static_cast<float>(1 / kLuminousIntegral);

@@ -159,7 +159,7 @@ float TextureImage::value(float s, float t, ImageWrap wrap) const {
 
 std::shared_ptr<const TextureImage> read_texture_image(const std::string& path,
                                                        const ImageEncoding& encoding) {
-  const Image image = read_image(path);
+  const Image image = in_srgb(read_image(path));
   const std::vector<int> kept = kept_channels(image, path);
   const bool encoded = holds_encoded_integers(path);
   const bool linearised = was_linearised(image);

@@ -9,6 +9,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/scene/build/build_media.h"
+#include "freepath/spectra/white_balance.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 
@@ -119,6 +120,38 @@ WavelengthBuckets read_buckets(const ParameterList& list) {
   return buckets;
 }
 
+/// What light of a temperature looks like through a film that is balanced for it.
+void read_sensor(BuildContext& context, const ParameterList& list, PictureSettings& picture) {
+  const auto positive = [&](std::string_view name, double otherwise) {
+    const double value = list.get_float(name, otherwise);
+    if (!(value > 0)) {
+      fail_at(list.location_of(name), "'{}' is {}: it must be more than 0", name, value);
+    }
+    return value;
+  };
+  // 'imagingratio' is the product of both others.
+  const double exposure = positive("exposuretime", picture.exposure_scale);
+  const double iso = positive("iso", 100);
+  picture.exposure_scale = static_cast<float>(positive("imagingratio", exposure * iso / 100));
+  const std::string sensor = list.get_string("sensor", "cie1931");
+  const bool observer = sensor == "cie1931";
+  constexpr double kCameraWhite = 6500;  // [K], of pbrt's measured sensors
+  const double temperature = list.get_float("whitebalance", observer ? 0 : kCameraWhite);
+  if (!observer) {
+    context.diagnostics.warn(
+        list.location_of("sensor"),
+        fmt::format("the measured responses of the sensor {} are not part of freepath: an ideal "
+                    "camera with the responses of the observer 'cie1931', balanced for {} K, takes "
+                    "its place; hues are closer to the eye's, and the brightness of the whole "
+                    "picture may differ",
+                    in_quotes(sensor), temperature));
+  }
+  if (temperature == 0) return;
+  picture.white_balance = at_location(list.location_of("whitebalance"), [&] {
+    return white_balance(temperature, context.scene.spectra->space());
+  });
+}
+
 void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) {
   if (!context.pbrt.film) return;
   const PbrtEntity& film = *context.pbrt.film;
@@ -134,16 +167,7 @@ void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) 
     fail_at(film.location, "a film of {} x {} pixels can't be rendered", size.width, size.height);
   }
   picture.file_name = list.get_string("filename", "");
-  const double iso = list.get_float("iso", 100);
-  const std::string sensor = list.get_string("sensor", "cie1931");
-  if (sensor != "cie1931") {
-    context.diagnostics.warn(list.location_of("sensor"),
-                             fmt::format("there is no sensor {}: the picture is made for the "
-                                         "observer 'cie1931'",
-                                         in_quotes(sensor)));
-  }
-  if (!(iso > 0)) fail_at(list.location_of("iso"), "'iso' is {}: it must be more than 0", iso);
-  picture.exposure_scale *= static_cast<float>(iso / 100);
+  read_sensor(context, list, picture);
   warn_if_given(context, list, "maxcomponentvalue",
                 "is left out: to clip samples would bias the picture");
   picture.all_layers = film.type == "gbuffer";
@@ -311,7 +335,6 @@ CameraModel make_camera_model(const PbrtEntity& camera) {
 
 PictureSettings build_picture(BuildContext& context, FilmSize& size) {
   PictureSettings picture;
-  picture.color_space = name_of(context.pbrt.color_space);
   for (const auto& option : context.pbrt.options.own()) {
     std::string name;
     for (const char c : option->name) {

@@ -17,9 +17,9 @@ struct PictureSettings {
   uint64_t seed = 0;
   /// Scatterings of a path; 5 in pbrt, where an integrator says nothing.
   uint32_t max_scatterings = 5;
-  std::string file_name;     ///< Of the film; may be empty.
-  float exposure_scale = 1;  ///< What the film's sensor multiplies radiance by.
-  std::string color_space = "srgb";
+  std::string file_name;      ///< Of the film; may be empty.
+  float exposure_scale = 1;   ///< What the film's sensor multiplies radiance by.
+  Matrix3d white_balance;     ///< From R, G, B to R, G, B; that of the film's sensor.
   bool all_layers = false;    ///< A film of type 'gbuffer'.
   WavelengthBuckets buckets;  ///< Of a film of type 'spectral'.
   std::optional<Crop> crop;   ///< In fractions, which any size of the film has.

@@ -112,7 +112,7 @@ class ShapeBuilder {
     path_shape.material = context_.materials[shape.material];
     path_shape.inside = medium_of(context_, shape.inside_medium);
     path_shape.outside = medium_of(context_, shape.outside_medium);
-    read_alpha(shape);
+    const bool is_there = read_alpha(shape);
     const bool boundary = !path_shape.material;
     const bool shines = shape.area_light && !boundary && !shape.object;
     if (shape.area_light && !shines) {
@@ -129,7 +129,12 @@ class ShapeBuilder {
       if (shines) {
         path_shape.light = static_cast<uint32_t>(built_.emitters.size());
         built_.emitters.push_back(
-            {built_.surfaces.shapes.size(), static_cast<uint32_t>(*shape.area_light), number});
+            {is_there ? built_.surfaces.shapes.size() : built_.invisible.size(),
+             static_cast<uint32_t>(*shape.area_light), number, !is_there});
+      }
+      if (!is_there) {
+        if (shines) built_.invisible.push_back(std::move(surface));
+        continue;
       }
       built_.shapes.push_back(path_shape);
       auto& place = shape.object ? built_.surfaces.groups[*shape.object] : built_.surfaces.shapes;
@@ -137,12 +142,21 @@ class ShapeBuilder {
     }
   }
 
-  void read_alpha(const PbrtShape& shape) {
+  /// Whether rays meet a shape. One of alpha 0 is no surface and no boundary of media, but its
+  /// light shines, as in pbrt.
+  bool read_alpha(const PbrtShape& shape) {
     const ParameterList& list = shape.parameters;
     const auto type = list.type_of("alpha");
-    if (!type) return;
-    if (*type == ParameterType::kFloat && list.get_float("alpha", 1) == 1) return;
-    context_.diagnostics.warn(list.location_of("alpha"), "'alpha' is left out: the shape is whole");
+    if (!type) return true;
+    if (*type == ParameterType::kFloat) {
+      const double alpha = list.get_float("alpha", 1);
+      if (alpha <= 0) return false;
+      if (alpha >= 1) return true;
+    }
+    context_.diagnostics.warn(list.location_of("alpha"),
+                              "'alpha' is left out: the shape is whole, since only 0 and 1, the "
+                              "same everywhere, are supported");
+    return true;
   }
 
   BuildContext& context_;
@@ -156,9 +170,9 @@ BuiltShapes build_shapes(BuildContext& context) { return ShapeBuilder(context).b
 std::vector<AreaLight> build_area_lights(const BuiltShapes& shapes, const Vec3d& origin) {
   std::vector<AreaLight> lights;
   for (const BuiltShapes::Emitter& emitter : shapes.emitters) {
-    lights.push_back(
-        {std::make_shared<const ShapeEmitter>(shapes.surfaces.shapes[emitter.surface], origin),
-         emitter.emission, false, false});
+    const auto& list = emitter.is_invisible ? shapes.invisible : shapes.surfaces.shapes;
+    lights.push_back({std::make_shared<const ShapeEmitter>(list[emitter.surface], origin),
+                      emitter.emission, false, emitter.is_invisible});
   }
   return lights;
 }

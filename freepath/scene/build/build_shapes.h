@@ -12,12 +12,15 @@ struct BuiltShapes {
   SurfaceScene surfaces;
   std::vector<PathShape> shapes;
   std::vector<AreaEmission> emissions;
-  /// Of the shapes with an area light: which (of surfaces.shapes), and its emission.
+  /// Shapes with an area light that let all rays through (alpha 0), so that none meets them.
+  std::vector<SurfaceShape> invisible;
+  /// Of the shapes with an area light: which (of surfaces.shapes, or of invisible), and its
+  /// emission.
   struct Emitter {
     std::size_t surface = 0;
     uint32_t emission = 0;
     uint32_t shape = 0;
-    bool reversed = false;
+    bool is_invisible = false;
   };
   std::vector<Emitter> emitters;
 

@@ -82,6 +82,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   FilmSize size;
   built.picture = build_picture(context, size);
   scene.exposure_scale = built.picture.exposure_scale;
+  scene.white_balance = Imath::M33f(built.picture.white_balance);
   name_media(context);
   build_camera(context, options.size.value_or(size));
   build_textures(context);
