@@ -38,7 +38,7 @@ the first frame, unless --look-at places it; --seed is the same for all frames; 
 frame. Ctrl-C writes the frame under way and ends the sequence.
 
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
-Methods take options after their name: weighted-delta:rate-scale=0.7
+Methods take options after their name: weighted-decomposition:control=0.5
 
 A scene of pbrt-v4 (.pbrt) says itself what is rendered; -o, --size, --spp, --seed and the methods
 take the place of what it says. Its parameters are listed in docs/scenes.md.
@@ -49,7 +49,7 @@ Examples:
   freepath render smoke.vdb -o smoke.exr --environment sky.hdr --sun none --time 60
   freepath render haze.nvdb -o haze.exr --sigma-s 4,1,0.25 --sigma-a 0.02,0.2,1 --sun 20,120
   freepath render cloud.vdb -o furnace.exr --albedo 1 --environment 1 --stats stats.json
-  freepath render cloud.vdb -o c.exr --tracker weighted-delta:rate-scale=0.7 --transmittance ratio
+  freepath render cloud.vdb -o c.exr --tracker weighted-decomposition --transmittance next-flight
   freepath render smoke.vdb fire.vdb -o both.exr --albedo 0.6 --albedo 0.2 --le 0 --le 9,3,0.5
   freepath render scene.pbrt -o scene.exr --spp 256 --color spectral
   freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral

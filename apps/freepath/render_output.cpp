@@ -183,12 +183,6 @@ void write_statistics(const std::string& file, const RenderResult& result,
 }
 
 void print_warnings(const RenderResult& result) {
-  if (result.overflows > 0) {
-    warn(
-        "the weights of {} paths left the range of float and count as 0; "
-        "do not trust this picture, take a larger rate-scale or another tracker",
-        result.overflows);
-  }
   if (result.pixels_without_samples > 0) {
     warn(
         "{} of {} pixels have no sample, for want of time; they are black "
@@ -196,6 +190,15 @@ void print_warnings(const RenderResult& result) {
         result.pixels_without_samples,
         static_cast<std::size_t>(result.film.width()) * result.film.height());
   }
+}
+
+void require_no_overflows(const RenderResult& result) {
+  if (result.overflows == 0) return;
+  fail(
+      "the weights of {} of {} paths left the range of float, so that the picture is not known: "
+      "the variance of their pixels is infinite; media or surfaces that give back more light than "
+      "they get do that, and trackers whose weights grow",
+      result.overflows, result.paths);
 }
 
 std::string samples_text(const RenderResult& result) {
@@ -217,6 +220,7 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
   print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
   print_warnings(result);
   for (const std::string& file : files) tell("wrote {}\n", file);
+  require_no_overflows(result);
 }
 
 }  // namespace freepath::program

@@ -67,10 +67,15 @@ void write_statistics(const std::string& file, const RenderResult& result,
 /// Tells on standard error what makes a picture less than it should be.
 void print_warnings(const RenderResult& result);
 
+/// Fails, once all is written, where paths were lost.
+/// @throws Error that says how many, and which pixels' variance is infinite
+void require_no_overflows(const RenderResult& result);
+
 /// "64", or "0 to 1" where pixels differ: samples per pixel.
 std::string samples_text(const RenderResult& result);
 
 /// Tells on standard error what was done.
+/// @throws Error as require_no_overflows
 void print_summary(const std::vector<std::string>& files, const RenderResult& result,
                    const RenderReport& report);
 

@@ -93,6 +93,7 @@ void print_frame(std::size_t index, std::size_t count, const PictureFiles& files
        count, result.interrupted ? "interrupted after " : "", samples_text(result),
        clock_text(report.seconds_load + report.seconds_build + report.seconds_render), written);
   print_warnings(result);
+  require_no_overflows(result);
 }
 
 /// Numbers of the frames from `begin` on, before `end`.

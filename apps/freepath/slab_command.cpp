@@ -251,13 +251,6 @@ void run(const SlabOptions& options) {
   });
   bar.finish();
   warn_if_biased(result.tracker);
-  constexpr double kWorryingWeight = 10;
-  if (result.largest_weight > kWorryingWeight) {
-    warn(
-        "weights of paths reach {:.3g}: under {} the variance may be "
-        "infinite in these layers, and the standard errors too small",
-        result.largest_weight, result.tracker);
-  }
   if (options.json) {
     print_json(result, settings);
   } else {

@@ -11,6 +11,7 @@
 #include "apps/freepath/console.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
+#include "freepath/transport/weight_growth.h"
 
 namespace freepath::program {
 namespace {
@@ -21,7 +22,7 @@ constexpr const char* kTrackersFooter =
 Examples:
   freepath trackers
   freepath trackers --json
-  freepath render cloud.vdb -o cloud.exr --tracker weighted-decomposition:control=1.3
+  freepath render cloud.vdb -o cloud.exr --tracker weighted-decomposition:control=0.5
   freepath render haze.vdb -o haze.exr --sigma-s 1,2,4 --tracker spectral --transmittance ratio)";
 
 /// `auto` stands for another tracker, and is in no registry.
@@ -53,6 +54,9 @@ void print_methods(const char* title, const std::vector<MethodInfo>& infos) {
     print("\n  {}{}\n      {}\n", info.name, info.biased ? "  (BIASED)" : "", info.summary);
     if (!info.needs.empty()) print("      needs:     {}\n", info.needs);
     print("      unbiased:  {}\n", info.biased ? "no" : info.unbiased);
+    if (const std::string paths = weights_in_paths(info); !paths.empty()) {
+      print("      paths:     {}\n", paths);
+    }
     if (info.name != kAutoInfo.name) print("      channels:  {}\n", channels_of(info));
     if (!info.source.empty()) print("      source:    {}\n", info.source);
     for (const MethodOption& option : info.options) {
@@ -84,6 +88,7 @@ nlohmann::json to_json(const std::vector<MethodInfo>& infos) {
                     {"needs", info.needs},
                     {"biased", info.biased},
                     {"unbiased", info.unbiased},
+                    {"paths", weights_in_paths(info)},
                     {"chromatic", info.chromatic},
                     {"source", info.source},
                     {"options", options}});

@@ -32,6 +32,7 @@ RenderSettings settings_of(const ComparisonSettings& settings, const Configurati
   render.walk.transmittance = configuration.transmittance;
   render.walk.interpolation = configuration.interpolation;
   render.whole_passes = true;
+  render.studies_unbounded_weights = true;  // the report tells heavy tails
   render.layers = {Layer::kVariance, Layer::kSamples, Layer::kLookups};
   return render;
 }

@@ -120,7 +120,8 @@ BiasTest test_bias(const PixelEstimates& estimates, const PixelEstimates& refere
   constexpr double kFewPixels = 0.05;
   const double usual = effective_pixels(reference);
   const double own = effective_pixels(estimates);
-  test.is_heavy_tailed = own > 0 && own < kFewPixels * usual;
+  // Of an infinite variance it is no number.
+  test.is_heavy_tailed = !std::isfinite(own) || (own > 0 && own < kFewPixels * usual);
   for (std::size_t channel = 0; channel < 3; ++channel) test.z[channel] = whole[channel].z();
   for (const Sums& sums : blocks) test.block_z.push_back(static_cast<float>(sums.z()));
   return test;

@@ -75,6 +75,7 @@ double LabMoments::mean(uint64_t paths) const { return sum / static_cast<double>
 
 double LabMoments::variance(uint64_t paths) const {
   const auto n = static_cast<double>(paths);
+  if (!std::isfinite(squares)) return squares;
   return std::max(0.0, squares / n - sum / n * (sum / n));
 }
 

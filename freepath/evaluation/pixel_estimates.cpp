@@ -73,10 +73,9 @@ PixelEstimates estimates_of(const Image& image, const std::string& name, bool& v
   } else {
     estimates.variance.assign(estimates.mean.size(), 0.0F);
   }
-  check_finite(estimates.variance, image.width, name);
   for (std::size_t i = 0; i < estimates.variance.size(); ++i) {
-    if (estimates.variance[i] >= 0) continue;
-    fail("{}: the variance of pixel ({}, {}) is negative", name, i / 3 % image.width,
+    if (estimates.variance[i] >= 0) continue;  // or infinite
+    fail("{}: the variance of pixel ({}, {}) is negative or no number", name, i / 3 % image.width,
          i / 3 / image.width);
   }
   estimates.samples = copy_channel(image, "samples");

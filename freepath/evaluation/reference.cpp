@@ -38,6 +38,11 @@ Reference read_reference(const std::string& file, const Subject& subject) {
     fail("{}: {} pixels of the reference have no sample; render it again, with more time", file,
          without);
   }
+  const auto is_infinite = [](float variance) { return !std::isfinite(variance); };
+  const auto& variance = reference.estimates.variance;
+  if (std::any_of(variance.begin(), variance.end(), is_infinite)) {
+    fail("{}: the variance of the reference is infinite; render it by another method", file);
+  }
   reference.origin = file;
   if (!reference.variance_known) {
     reference.origin += ", taken for exact: it has neither variances nor halves";
@@ -78,6 +83,11 @@ Reference make_reference(const Subject& subject, const ReferencePlan& plan,
   const RenderResult result = render(settings, progress);
   if (result.interrupted) return {};
   Reference reference{.estimates = estimates_of(result.film)};
+  const std::vector<float>& variance = reference.estimates.variance;
+  if (!std::all_of(variance.begin(), variance.end(), [](float v) { return std::isfinite(v); })) {
+    fail("the reference by {} has an infinite variance; take another method or file for it",
+         configuration.tracker);
+  }
   reference.origin =
       fmt::format("made with {} and {}, {} samples per pixel in {:.1f} s", configuration.tracker,
                   configuration.transmittance, result.samples, result.seconds);

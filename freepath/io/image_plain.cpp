@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "freepath/base/error.h"
+#include "freepath/base/vector.h"
 #include "freepath/io/aside_file.h"
 
 namespace freepath {

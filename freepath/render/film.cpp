@@ -26,7 +26,7 @@ float to_float(double value) {
 double variance_of_mean(double sum, double sum_of_squares, double samples) {
   const double mean = sum / samples;
   const double mean_square = sum_of_squares / samples;
-  if (samples < 2) return mean_square;
+  if (samples < 2 || !std::isfinite(mean_square)) return mean_square;
   return std::max(0.0, mean_square - mean * mean) / (samples - 1);
 }
 
@@ -86,6 +86,7 @@ void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& l
     sums.radiance[channel] += value;
     sums.squares[channel] += value * value;
     sums.albedo[channel] += sample.albedo[channel];
+    if (sample.overflowed) sums.squares[channel] = std::numeric_limits<double>::infinity();
   }
   sums.alpha += sample.alpha;
   sums.depth += static_cast<double>(sample.depth) * sample.depth_weight;
@@ -157,7 +158,9 @@ void Film::put_layer(Layer layer, std::size_t pixel, std::vector<float>& values)
       return put(sums.lookups / n);
     case Layer::kVariance:
       for (int c = 0; c < kChannels; ++c) {
-        put(variance_of_mean(sums.radiance[c], sums.squares[c], n));
+        // As a float it may be infinite, and then says so.
+        values.push_back(
+            static_cast<float>(variance_of_mean(sums.radiance[c], sums.squares[c], n)));
       }
       return;
     case Layer::kSamples:

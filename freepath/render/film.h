@@ -25,6 +25,8 @@ struct PathSample {
   float depth = 0;          ///< Distance to the first scatter [world].
   float depth_weight = 0;   ///< 1 if there was a first scatter, else 0 (or its weight).
   float lookups = 0;        ///< Look-ups of fields along the path.
+  /// Whether its weight left the range of float: what it found is not known, and 0 here.
+  bool overflowed = false;
 };
 
 /// What one path found for layers that few ask for (kPathLayers).
@@ -76,6 +78,7 @@ class Film {
 
   /// Adds the next sample of a pixel.
   ///
+  /// A sample that overflowed makes the variance of its pixel infinite.
   /// A sample with a NaN or infinite part is counted, not added: whoever adds samples reports it
   /// as an internal error (non_finite_samples).
   /// @param pixel row · width + column
@@ -108,10 +111,11 @@ class Film {
   ///
   /// A is 1 - transmittance. depth.Z is the mean distance to the first scatter, 0 where no path
   /// scattered. lookups is their mean number for a path. variance is that of the mean,
-  /// (E[x²] - E[x]²) / (n - 1); of a single sample x² stands in, which is not below the variance on
-  /// average. normal is the mean over all paths, 0 for those without a first event; position is one
-  /// over first events. emission + background + direct + indirect is R, G, B, up to rounding. A and
-  /// B are means over the samples of even and odd number. A pixel without samples is 0.
+  /// (E[x²] - E[x]²) / (n - 1), infinite where it exceeds a float; of a single sample x² stands in,
+  /// which is not below the variance on average. normal is the mean over all paths, 0 for those
+  /// without a first event; position is one over first events. emission + background + direct +
+  /// indirect is R, G, B, up to rounding. A and B are means over the samples of even and odd
+  /// number. A pixel without samples is 0.
   ///
   /// After them come the buckets of wavelengths, if there are any: the mean over what came into
   /// each, 0 where nothing did.

@@ -311,6 +311,7 @@ void PathWavefront::finish(const Path& path, int channel) {
   if (!is_finite(path.radiance) || !std::isfinite(path.alpha) ||
       !std::isfinite(path.depth_weight)) {
     ++job_counts_.overflows;
+    sample.overflowed = true;
     return;
   }
   sample.radiance += path.radiance;

@@ -4,6 +4,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/render/pass_renderer.h"
+#include "freepath/transport/weight_growth.h"
 
 namespace freepath {
 namespace {
@@ -31,6 +32,15 @@ PathSetup make_setup(const Medium& medium, const Camera& camera, const Lights& l
   return setup;
 }
 
+/// @throws Error where weights of paths would grow at every scattering
+void check_weights(const Medium& medium, const RenderSettings& settings) {
+  if (settings.studies_unbounded_weights) return;
+  const int channel = shares_paths(medium, settings.walk) ? Walker::kAllChannels : 0;
+  require_bounded_weights(weight_growth(channels_of(medium, channel), settings.walk),
+                          settings.max_scatterings);
+  require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
+}
+
 }  // namespace
 
 RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
@@ -38,6 +48,7 @@ RenderResult render(const Medium& medium, const Camera& camera, const Lights& li
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
   }
+  check_weights(medium, settings);
   const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
   RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
   const PathSetup setup = make_setup(medium, camera, lights, settings);

@@ -22,6 +22,9 @@ struct RenderSettings {
   int wavelengths = 4;  ///< Of a path, where they are rendered: 1 to kMaxChannels.
   int threads = 0;      ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
+  /// Renders although the weights of paths are not bounded (WeightGrowth): to study methods, not
+  /// for pictures.
+  bool studies_unbounded_weights = false;
   /// What the film records; path layers cost time, and all cost memory.
   LayerSet layers = LayerSet::standard();
   /// Channels of spectral radiance, in the light's own units (docs/scenes.md); recorded only where
@@ -51,7 +54,7 @@ struct RenderResult {
   /// Of the pixel with the fewest, and with the most: the same, unless a pass was broken off.
   uint32_t samples = 0, most_samples = 0;
   std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
-  /// Paths whose weight left the range of float; with any, the picture is not to be trusted.
+  /// Paths whose weight left the range of float: their pixels have an infinite variance.
   uint64_t overflows = 0;
   double seconds = 0;
   bool interrupted = false;
@@ -78,7 +81,8 @@ using ProgressFunction = std::function<bool(const RenderProgress&)>;
 /// the same as in any other picture. How many samples a pixel has then depends on the time that
 /// its paths took; dropping those unfinished, rather than waiting for them, keeps the bias of the
 /// mean small [Glynn90]. A pixel without samples has no mean.
-/// @throws Error for methods that do not exist, and (an internal error) if a sample is not finite
+/// @throws Error for methods that do not exist or whose weights would grow at every scattering
+///   (weight_growth.h), and (an internal error) if a sample is not finite
 RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
                     const RenderSettings& settings, const ProgressFunction& progress = {});
 

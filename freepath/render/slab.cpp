@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "freepath/base/threads.h"
 #include "freepath/render/slab_paths.h"
 #include "freepath/transport/auto_tracker.h"
+#include "freepath/transport/weight_growth.h"
 
 namespace freepath {
 namespace {
@@ -38,6 +40,40 @@ void check_settings(const SlabSettings& settings) {
     fail("the bounds can't be scaled by {}: from 1, tight, to {} is possible", settings.bound_scale,
          kLargestBoundScale);
   }
+}
+
+/// E_2, the share of isotropic light that an absorber of this thickness lets through.
+double exponential_integral_2(double x) {
+  if (x == 0) return 1;
+  return std::isinf(x) ? 0 : std::exp(-x) + x * std::expint(-x);
+}
+
+/// Refuses trackers whose weights may have an infinite mean square in these layers. The mean square
+/// obeys a transfer equation of its own, whose collisions multiply; it is finite where fewer than
+/// one follows each. Of isotropic scattering that share is at most 1 - E_2 of half the thickness,
+/// in the middle; Henyey and Greenstein's phase function exceeds the isotropic one by at most
+/// (1 + |g|)/(1 - |g|)², of others nothing is taken for known.
+/// @throws Error that says what to take instead
+void check_growth(std::span<const SlabLayer> layers, const SlabMedium& slab,
+                  const WalkSettings& walk) {
+  const WeightGrowth growth = weight_growth(channels_of(slab.medium, 0), walk);
+  if (growth.bounded()) return;
+  double tau = 0;
+  double albedo = 0;
+  double peak = 0;
+  for (const SlabLayer& layer : layers) {
+    tau += layer.tau;
+    albedo = std::max(albedo, layer.albedo);
+    const double g = std::abs(layer.g);
+    peak = layer.phase ? std::numeric_limits<double>::infinity()
+                       : std::max(peak, (1 + g) / ((1 - g) * (1 - g)));
+  }
+  // What scatters keeps the albedo in its weight, or survives with that probability.
+  const double kept = walk.absorption == Absorption::kWeighted ? albedo * albedo : albedo;
+  const double loss = growth.per_mean_free_path / growth.per_flight;
+  const double share = std::min(1.0, peak * (1 - exponential_integral_2(0.5 * loss * tau)));
+  if (kept == 0 || growth.per_flight * kept * share < 1) return;
+  fail("{}; the variance may be infinite in these layers", growth.reason);
 }
 
 /// Traces all chunks, and merges their sums in order.
@@ -97,6 +133,7 @@ SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& set
     walk.tracker = std::move(choice.tracker);
     reason = std::move(choice.reason);
   }
+  check_growth(layers, slab, walk);
   // Layers are grey: a tracker that would give each channel its own path needs one.
   const Walker walker(slab.medium, walk,
                       shares_paths(slab.medium, walk) ? Walker::kAllChannels : 0);

@@ -91,7 +91,7 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel =
 /// result depends on layers, seed, tracker, absorption, instructions and the number of paths alone,
 /// never on threads or batch.
 /// @throws Error as make_slab_medium, for settings out of range, methods that do not exist, and
-///   weights that overflow (a tracker whose rate is far from a bound)
+///   trackers whose weights may have an infinite variance in these layers
 SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& settings,
                       const SlabProgress& progress = {});
 

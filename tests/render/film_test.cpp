@@ -45,6 +45,25 @@ TEST(Film, AveragesWhatThePathsFound) {
   EXPECT_EQ(film.samples(1), 2);
 }
 
+// An error bar that is not known is not small.
+TEST(Film, AVarianceThatIsNoFloatIsInfinite) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Film film(3, 1);
+  film.add(0, {.radiance = {1e30F, 1, 1}});
+  film.add(0, {.radiance = {-1e30F, 1, 1}});
+  film.add(1, {.radiance = {1, 1, 1}});
+  film.add(1, {.overflowed = true});
+  film.add(1, {.radiance = {1, 1, 1}});
+  film.add(2, {.overflowed = true});
+  const Image image = film.to_image();
+  EXPECT_EQ(value(image, 0, "variance.R"), kInfinity);
+  EXPECT_EQ(value(image, 0, "variance.G"), 0);
+  for (const char* channel : {"variance.R", "variance.G", "variance.B"}) {
+    EXPECT_EQ(value(image, 1, channel), kInfinity);
+    EXPECT_EQ(value(image, 2, channel), kInfinity);
+  }
+}
+
 TEST(Film, VarianceIsThatOfTheMean) {
   Film film(1, 1);
   RandomStream random(1, 0, 0, 0);

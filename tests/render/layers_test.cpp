@@ -70,7 +70,7 @@ void expect_parts_make_the_whole(const Image& image) {
 
 TEST(Layers, PartsOfTheLightAddUpForEveryKindOfPath) {
   // One path for all channels, one for each, and one that carries channels of its own.
-  for (const char* tracker : {"delta", "weighted-delta:rate-scale=0.8", "spectral"}) {
+  for (const char* tracker : {"delta", "weighted-delta:rate-scale=1.3", "spectral"}) {
     for (const Spectrum& sigma_s : {Spectrum(1.5F), Spectrum(1.5F, 0.7F, 0.2F)}) {
       for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
         RenderSettings settings = sampled(7);

@@ -9,6 +9,7 @@
 #include <map>
 #include <vector>
 
+#include "freepath/base/error.h"
 #include "freepath/render/deadline.h"
 #include "tests/statistics.h"
 #include "tests/transport/media_for_tests.h"
@@ -81,6 +82,83 @@ PictureMean picture_mean(const Film& film, int channel) {
   result.mean /= pixels;
   result.error = std::sqrt(result.error) / pixels;
   return result;
+}
+
+// Of a tracker whose weights grow at every scattering a picture would have an infinite variance,
+// and be far from right: it is refused before it starts, unless paths are short.
+TEST(Renderer, RefusesTrackersWhoseWeightsGrow) {
+  const Spectrum colour(1.0F, 2.0F, 3.0F);
+  const Spectrum albedos(1.0F, 0.5F, 0.2F);
+  const Medium grey({cloud(Spectrum(0.0F), Spectrum(3.0F), 0)});
+  const Medium coloured({cloud(Spectrum(0.0F), colour, 0)});
+  const Medium grey_extinction({cloud(Spectrum(1.0F) - albedos, albedos, 0)});
+  struct Case {
+    const Medium& medium;
+    const char* tracker;
+    bool refused;
+    uint32_t max_scatterings = UINT32_MAX;
+    Absorption absorption = Absorption::kWeighted;
+    const char* transmittance = "ratio";
+  };
+  const Case cases[] = {
+      {grey, "weighted-delta:rate-scale=0.7", true},
+      {grey, "weighted-delta:rate-scale=0.99", true},
+      {grey, "weighted-delta:rate-scale=0.9", false, 1},
+      {grey, "weighted-delta:rate-scale=0.7", true, 3},
+      {grey, "weighted-delta:rate-scale=0.5", true, 0},
+      {grey, "weighted-delta:rate-scale=1", false},
+      {grey, "weighted-decomposition:control=1.1", true},
+      {grey, "weighted-decomposition:control=0.5", false},
+      {grey, "weighted-decomposition:rate-scale=0.9", true},
+      {grey, "spectral:collision-probability=max", false},
+      {grey, "spectral:rate-scale=0.9", true},
+      {coloured, "spectral:collision-probability=max", true},
+      {coloured, "spectral:collision-probability=average", true},
+      {coloured, "spectral-decomposition:collision-probability=max", true},
+      {coloured, "spectral", false},
+      {coloured, "hero-wavelength", false},
+      {coloured, "hero-wavelength:selection=throughput-albedo", true},
+      {coloured, "delta", false, UINT32_MAX, Absorption::kAnalog},
+      {grey_extinction, "delta", false},
+      {grey_extinction, "delta", true, UINT32_MAX, Absorption::kAnalog},
+      {grey_extinction, "spectral", false, UINT32_MAX, Absorption::kAnalog},
+      {grey, "delta", true, UINT32_MAX, Absorption::kWeighted, "ratio:rate-scale=0.4"},
+      {grey, "delta", false, UINT32_MAX, Absorption::kWeighted, "ratio:rate-scale=0.6"},
+      {grey, "delta", true, UINT32_MAX, Absorption::kWeighted, "p-series:rate-scale=0.4"},
+  };
+  for (const Case& test : cases) {
+    RenderSettings settings = settings_of(1, test.tracker);
+    settings.max_scatterings = test.max_scatterings;
+    settings.walk.absorption = test.absorption;
+    settings.walk.transmittance = test.transmittance;
+    const auto picture = [&] {
+      render(test.medium, camera_for(test.medium, 2, 2), constant_light(1), settings);
+    };
+    SCOPED_TRACE(test.tracker);
+    if (test.refused) {
+      EXPECT_THROW(picture(), Error);
+    } else {
+      EXPECT_NO_THROW(picture());
+    }
+    settings.studies_unbounded_weights = true;
+    EXPECT_NO_THROW(picture());
+  }
+}
+
+// What a path that overflows would have added is not known, and neither is the error of its pixel.
+TEST(Renderer, AnOverflowMakesTheVarianceInfinite) {
+  const Medium medium({cloud(Spectrum(0.0F), Spectrum(300.0F), 0)});
+  RenderSettings settings = settings_of(2, "weighted-delta:rate-scale=0.1");
+  settings.studies_unbounded_weights = true;
+  const RenderResult result = render(medium, camera_for(medium, 4, 4), constant_light(1), settings);
+  EXPECT_GT(result.overflows, 0U);
+  const Image image = result.film.to_image();
+  const int place = find_channel(image, "variance.R").value();
+  bool infinite = false;
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    infinite = infinite || std::isinf(image.values[i * image.channels.size() + place]);
+  }
+  EXPECT_TRUE(infinite);
 }
 
 struct FurnaceCase {

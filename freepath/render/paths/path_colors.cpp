@@ -36,13 +36,16 @@ uint32_t reversed_bits(uint32_t word) {
 /// The index in binary, mirrored at the point: [0, 1).
 double van_der_corput(uint32_t index) { return reversed_bits(index) * 0x1p-32; }
 
-/// Whether one path carries channels of different extinction.
-bool carries_colours(const WalkSettings& walk) {
+/// Channels of different extinction.
+MediumChannels coloured_channels() {
   MediumChannels coloured;
   coloured.count = 3;
   coloured.components.emplace_back().sigma_s = {1, 2, 3};
-  return shares_paths(coloured, walk);
+  return coloured;
 }
+
+/// Whether one path carries channels of different extinction.
+bool carries_colours(const WalkSettings& walk) { return shares_paths(coloured_channels(), walk); }
 
 /// Whether so much of a medium glows that its paths find the light without a guide: lines of their
 /// own cost half as much again. The volume that counts is that of as many equally bright cells.
@@ -87,6 +90,7 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
                             : carries_colours(walk);
     if (!shares) paths_per_sample_ = first.channels();
   }
+  find_weight_growth(first);
   constant_.resize(scene.media.size());
   for (std::size_t i = 0; i < scene.media.size(); ++i) {
     std::shared_ptr<const MediumWalkers> walkers = make_walkers(i, first);
@@ -129,6 +133,17 @@ uint32_t ColorFactory::set_of(uint32_t pixel, uint32_t sample) const {
   RandomStream random(walk_.seed, pixel, block, 0xFFFFFFFEU);
   const uint32_t bits = reversed_bits(sample) ^ random.bits();
   return block * sets_per_block_ + (bits >> (32 - std::countr_zero(sets_per_block_)));
+}
+
+void ColorFactory::find_weight_growth(const SpectrumValues& first) {
+  for (const SceneMedium& medium : scene_.media) {
+    // Wavelengths of other samples may differ more than those of the first.
+    const bool known = mode_ == ColorMode::kRgb || medium.is_grey(*scene_.spectra);
+    const MediumChannels all = known ? medium.bind(first).channels : coloured_channels();
+    const WeightGrowth growth =
+        freepath::weight_growth(paths_per_sample_ == 1 ? all : all.only(0), walk_);
+    if (growth.per_flight > weight_growth_.per_flight) weight_growth_ = growth;
+  }
 }
 
 void ColorFactory::make_guides() {

@@ -13,6 +13,7 @@
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/spectra/spectrum_table.h"
 #include "freepath/transport/walker.h"
+#include "freepath/transport/weight_growth.h"
 
 namespace freepath {
 
@@ -83,6 +84,9 @@ class ColorFactory {
   uint32_t sets_per_block() const { return sets_per_block_; }
   std::shared_ptr<const PathColors> colors_of_set(uint32_t set) const;
 
+  /// Growth of the weights of paths in the medium where it is largest.
+  const WeightGrowth& weight_growth() const { return weight_growth_; }
+
   /// Paths of a sample: 1, or one for each channel where a tracker gives each its own.
   int paths_per_sample() const { return paths_per_sample_; }
   /// Whether sets of wavelengths differ in walkers, so that their flights are walked apart.
@@ -119,6 +123,7 @@ class ColorFactory {
   std::shared_ptr<const Medium> combined_medium(
       MediumId combination, const std::vector<std::shared_ptr<const Medium>>& media) const;
   std::shared_ptr<const PathColors> make(SpectrumValues spectra) const;
+  void find_weight_growth(const SpectrumValues& first);
   void make_guides();
   SpectrumValues spectra_of_set(uint32_t set) const;
   uint32_t choose_sets_per_block() const;
@@ -131,6 +136,7 @@ class ColorFactory {
   bool depends_on_wavelengths_ = false;
   uint32_t sets_per_block_ = 1;
   bool sees_rgb_ = false;
+  WeightGrowth weight_growth_;
   /// Walkers of media that are the same at all wavelengths, null of others.
   std::vector<std::shared_ptr<const MediumWalkers>> constant_;
   std::shared_ptr<const PathColors> rgb_;

@@ -71,6 +71,12 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
     result.film.set_chromaticities(chromaticities);
   }
   const ColorFactory factory(scene, mode, settings.wavelengths, settings.walk);
+  if (!settings.studies_unbounded_weights) {
+    require_bounded_weights(factory.weight_growth(), settings.max_scatterings);
+    if (!scene.media.empty()) {
+      require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
+    }
+  }
   SceneSetup setup;
   setup.scene = &scene;
   setup.factory = &factory;

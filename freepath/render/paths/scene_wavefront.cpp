@@ -287,6 +287,7 @@ void SceneWavefront::finish(ScenePath& path) {
   sample.lookups = static_cast<float>(path.lookups);
   if (!is_finite(path.radiance) || !is_finite(path.rgb)) {
     ++job_counts_.overflows;
+    sample.overflowed = true;
     return;
   }
   sample.radiance = rgb_of(path, path.radiance, path.rgb);
@@ -326,6 +327,7 @@ void SceneWavefront::add_to_film(const PathJob& job, Film& film) const {
       for (std::size_t c = 0; c < per_sample; ++c) {
         const PathSample& part = results_[i * per_sample + c];
         sum.radiance += part.radiance;
+        sum.overflowed |= part.overflowed;
         sum.lookups += part.lookups;
         sum.alpha += part.alpha * share;
         sum.albedo += part.albedo * share;
