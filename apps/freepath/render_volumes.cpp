@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 #include <utility>
 
 #include "apps/freepath/console.h"
@@ -57,6 +58,11 @@ OpticalProperties read_optics(const VolumeOptions& options, std::size_t volume) 
   spectrum(options.sigma_a, "--sigma-a", optics.sigma_a);
   spectrum(options.sigma_s, "--sigma-s", optics.sigma_s);
   spectrum(options.radiance, "--le", optics.emission);
+  const auto kelvins = [&](const std::vector<double>& values, const char* option, double& target) {
+    if (const double* const value = value_for(volume, volumes, values, option)) target = *value;
+  };
+  kelvins(options.temperature_scale, "--temperature-scale", optics.temperature_scale);
+  kelvins(options.temperature_offset, "--temperature-offset", optics.temperature_offset);
   return optics;
 }
 
@@ -81,6 +87,21 @@ std::vector<LoadOptions> read_grids(const std::string& text, NegativePolicy nega
   return grids;
 }
 
+void print_volume_warnings(const LoadedField& loaded) {
+  for (const std::string& warning : loaded.warnings) {
+    warn("{}", warning);
+  }
+}
+
+/// Kelvins as densities make a picture as slow as it is wrong.
+void warn_of_temperatures(const VolumePlan& plan, const LoadedField& loaded) {
+  const std::string& name = loaded.field.name;
+  if (!name.starts_with("temperature") && name != "heat" && name != "flame") return;
+  warn(
+      "{}: grid '{}', up to {:.4g}, is rendered as a density; temperatures are --temperature {}",
+      plan.file, name, loaded.maximum, name);
+}
+
 }  // namespace
 
 std::vector<VolumePlan> plan_volumes(const VolumeOptions& options) {
@@ -91,7 +112,19 @@ std::vector<VolumePlan> plan_volumes(const VolumeOptions& options) {
         value_for(volume, options.files.size(), options.grids, "--grid");
     plans.push_back({options.files[volume],
                      read_grids(grid != nullptr ? *grid : std::string(), negative),
-                     read_optics(options, volume)});
+                     read_optics(options, volume),
+                     {}});
+    const std::string* const temperature =
+        value_for(volume, options.files.size(), options.temperature, "--temperature");
+    if (temperature != nullptr && *temperature != "none") {
+      plans.back().temperature = LoadOptions{.selection = parse_grid_selection(*temperature),
+                                             .scalar_only = true};
+    }
+  }
+  if (options.temperature.empty() &&
+      !(options.temperature_scale.empty() && options.temperature_offset.empty())) {
+    fail("--temperature-scale and --temperature-offset are of a grid of temperatures; name it by "
+         "--temperature");
   }
   return plans;
 }
@@ -104,12 +137,17 @@ std::vector<Volume> load_volumes(const std::vector<VolumePlan>& plans,
     report.push_back({plan.file, {}});
     for (const LoadOptions& grid : plan.grids) {
       for (LoadedField& loaded : load_fields(plan.file, grid)) {
-        for (const std::string& warning : loaded.warnings) {
-          warn("{}", warning);
-        }
+        print_volume_warnings(loaded);
         report.back().grids.push_back(loaded.field.name);
+        warn_of_temperatures(plan, loaded);
         volume.densities.push_back(std::move(loaded.field));
       }
+    }
+    if (plan.temperature) {
+      LoadedField loaded = load_field(plan.file, *plan.temperature);
+      print_volume_warnings(loaded);
+      report.back().grids.push_back(loaded.field.name);
+      volume.temperature = std::make_shared<const Field>(std::move(loaded.field));
     }
     volumes.push_back(std::move(volume));
   }
@@ -135,7 +173,16 @@ void add_volume_options(CLI::App& command, VolumeOptions& o) {
       "Phase function: isotropic, henyey-greenstein:g=0.8, rayleigh, draine:g=0.5,alpha=1, "
       "droplets:diameter=20 [um], tabulated:FILE of angles and values, or a mixture, "
       "0.7*droplets:diameter=10+0.3*rayleigh [isotropic]");
-  add("--le", o.radiance, "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e [0]");
+  add("--le", o.radiance,
+      "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e [0]; with --temperature what "
+      "multiplies the black body's [1]");
+  add("--temperature", o.temperature,
+      "Grid of temperatures, by name or number: the volume glows as black bodies of them, as far as "
+      "it absorbs; none for a volume without");
+  add("--temperature-scale", o.temperature_scale, "Kelvins in a unit of that grid [1]")
+      ->check(kFiniteNumber);
+  add("--temperature-offset", o.temperature_offset, "Value of that grid at 0 K [0]")
+      ->check(kFiniteNumber);
   command.add_option("--negative", o.negative, "Negative densities: error or clamp")
       ->capture_default_str()
       ->group("Medium");

@@ -2,6 +2,7 @@
 /// @file The volumes of a picture: files, grids and optical properties, each given once for all of
 /// them or once for each.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct VolumeOptions {
   std::vector<std::string> files;
   std::vector<std::string> grids;  ///< "density", or three for R,G,B: "red,green,blue"
   std::vector<double> density_scale, g;
+  std::vector<std::string> temperature;  ///< Grids of temperatures.
+  std::vector<double> temperature_scale, temperature_offset;
   std::vector<std::string> phase;
   std::vector<std::string> albedo, sigma_a, sigma_s, radiance;
   std::string negative = "error";
@@ -31,6 +34,7 @@ struct VolumePlan {
   std::string file;
   std::vector<LoadOptions> grids;  ///< One, or those of R, G and B.
   OpticalProperties optics;
+  std::optional<LoadOptions> temperature;
 };
 
 /// Reads the options; no file is opened.

@@ -326,7 +326,7 @@ bool Medium::has_grey_extinction() const {
 bool Medium::is_grey() const {
   return std::all_of(components_.begin(), components_.end(), [](const Component& c) {
     return freepath::is_grey(c.sigma_a) && freepath::is_grey(c.sigma_s) &&
-           freepath::is_grey(c.emission);
+           freepath::is_grey(c.emission) && c.radiance[0].field == nullptr;
   });
 }
 

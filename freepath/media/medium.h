@@ -12,6 +12,7 @@
 #include "freepath/media/field.h"
 #include "freepath/media/page_allocator.h"
 #include "freepath/media/phase/phase_function.h"
+#include "freepath/media/radiance_field.h"
 #include "freepath/media/super_voxels.h"
 #include "freepath/media/walk_part.h"
 #include "freepath/media/walk_space.h"
@@ -32,6 +33,9 @@ struct Component {
   Spectrum sigma_s{1.0F};    ///< Scattering per unit of density [1/m].
   PhaseFunction phase = {};  ///< Isotropic unless it is set.
   Spectrum emission{0.0F};  ///< L_e, emitted radiance; the source term is sigma_a · density · L_e.
+  /// What multiplies L_e, from place to place, in R, G and B: a black body's radiance of a field of
+  /// temperatures. All three have fields, of one layout, or none has.
+  std::array<RadianceField, kChannels> radiance = {};
 
   Spectrum sigma_t() const { return sigma_a + sigma_s; }
 };

@@ -83,6 +83,7 @@ MediumChannels channels_of(const Medium& medium, int channel) {
       target.sigma_a[slot] = component.sigma_a[from];
       target.sigma_s[slot] = component.sigma_s[from];
       target.emission[slot] = component.emission[from];
+      target.radiance[slot] = component.radiance[from];
     }
   }
   return channels;

@@ -6,20 +6,10 @@
 #include <vector>
 
 #include "freepath/base/channels.h"
-#include "freepath/media/field.h"
 #include "freepath/media/medium.h"
+#include "freepath/media/radiance_field.h"
 
 namespace freepath {
-
-/// Emitted radiance as a function of a field's value, which is interpolated trilinearly: a black
-/// body's of its temperature. Straight lines between the values of a table, held at both ends.
-struct RadianceField {
-  std::shared_ptr<const Field> field;  ///< Null: the same radiance everywhere.
-  /// Radiance where the field is first + i · step; empty: the field is the radiance.
-  std::shared_ptr<const std::vector<float>> table;
-  float first = 0;
-  float step = 1;
-};
 
 /// Of one component. A path of fewer channels uses the first ones.
 struct ComponentChannels {

@@ -82,6 +82,7 @@ std::string cell_html(const PageCell& cell, const PageColumn& column) {
   classes += tone;
   std::string html = "<td";
   if (!classes.empty()) html += fmt::format(" class=\"{}\"", classes);
+  html += fmt::format(" data-label=\"{}\"", escape_markup(column.name));
   if (column.is_numeric) html += fmt::format(" data-number=\"{}\"", script_number(cell.number));
   html += ">" + escape_markup(cell.text);
   if (!cell.note.empty()) {
@@ -179,7 +180,10 @@ std::string block_html(const PageTable& block) {
   std::string html = "<figure class=\"card table-card\">\n";
   html += fmt::format("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">\n",
                       escape_markup(block.caption.empty() ? "Table" : block.caption));
-  html += fmt::format("<table style=\"--columns:{}\">\n", block.columns.size());
+  constexpr std::size_t kMany = 4;  // columns that a phone has no room for
+  html += fmt::format("<table{} style=\"--columns:{}\">\n",
+                      block.columns.size() >= kMany ? " class=\"many\"" : "",
+                      block.columns.size());
   html += "<thead><tr>";
   for (const PageColumn& column : block.columns) html += head_html(column);
   html += "</tr></thead>\n<tbody>\n";

@@ -65,14 +65,15 @@ figure{margin:0}
 
 /* Programs. */
 .code{display:flex;align-items:flex-start;background:var(--code);padding:0;box-shadow:none}
-.code pre{flex:1;min-width:0;margin:0;padding:1rem 1.25rem;overflow-x:auto;
-  font:.8438rem/1.65 ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace}
+.code{width:fit-content;max-width:100%}
+.code pre{flex:0 1 auto;min-width:0;margin:0;padding:1rem 1.25rem;white-space:pre-wrap;
+  overflow-wrap:anywhere;font:.8438rem/1.65 ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace}
 .code .button{margin:.6rem .6rem 0 0}
 
 /* Tables. */
 .table-card{padding:0;overflow:hidden}
 .table-card .caption{padding:0 1.25rem 1rem}
-.scroll{overflow:auto;max-height:min(85vh,56rem);overscroll-behavior-x:contain}
+.scroll{overflow-x:auto;overscroll-behavior-x:contain}
 table{border-collapse:separate;border-spacing:0;width:100%;font-size:.8438rem;line-height:1.35;
   font-variant-numeric:tabular-nums}
 th,td{padding:.5rem .65rem;border-bottom:1px solid var(--line);text-align:left;
@@ -115,7 +116,7 @@ tbody td.best,tbody tr:hover td.best{background:var(--tint)}
 .drawing{overflow-x:auto}
 .drawing>svg{display:block;width:100%;min-width:var(--least);max-width:var(--widest);height:auto;margin:0 auto}
 .drawing .fpc-paper{display:none}
-.fpc{--fpc-paper:var(--card)!important}
+.drawing .fpc .fpc-halo{stroke:var(--card)!important}
 .under{display:flex;gap:1rem;align-items:flex-start;justify-content:space-between;
   margin-top:auto;padding:.4rem .6rem 0}
 .under .caption{margin:.25rem 0 0}
@@ -177,6 +178,22 @@ html:not(.js) .enlarge{cursor:auto}
 @media (max-width:1000px){
   .figures{grid-template-columns:minmax(0,1fr)}
   .maps .grid{grid-template-columns:repeat(auto-fill,minmax(min(10rem,100%),1fr))}
+}
+/* A row of a wide table becomes a card, in which every value has its name. */
+@media screen and (max-width:900px){
+  .scroll{background:none}
+  table.many,.many tbody,.many tr,.many td{display:block}
+  .many thead{display:none}
+  .many tr{padding:.7rem 1.25rem;border-bottom:1px solid var(--line)}
+  .many tbody tr:last-child{border-bottom:0}
+  .many td,.many td:first-child,.many td:last-child{display:flex;justify-content:space-between;
+    gap:1rem;padding:.15rem 0;border:0;position:static;text-align:right;white-space:normal;
+    overflow-wrap:anywhere}
+  .many td::before{content:attr(data-label);color:var(--soft);font-weight:400;text-align:left;
+    flex:none;max-width:50%}
+  .many td:first-child{font-size:.9375rem;text-align:left}
+  .many td:first-child::before{content:none}
+  .many .note{display:inline;margin-left:.5em}
 }
 @media (max-width:600px){
   main{padding-top:2rem}

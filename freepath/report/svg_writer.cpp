@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "freepath/report/chart_colors.h"
 #include "freepath/report/markup.h"
@@ -12,41 +13,39 @@ namespace {
 
 using Palette = std::array<std::string_view, 8>;
 
-/// Declarations of all colours as variables.
-std::string variables(const ChartInks& inks, const Palette& palette) {
-  std::string result = fmt::format(
-      "--fpc-paper:{};--fpc-ink:{};--fpc-soft:{};--fpc-grid:{};--fpc-bar:{};"
-      "--fpc-best:{}",
-      inks.paper, inks.ink, inks.soft, inks.grid, inks.bar, inks.best);
-  for (std::size_t i = 0; i < palette.size(); ++i) {
-    result += fmt::format(";--fpc-{}:{}", i + 1, palette[i]);
+/// Rules that give all classes their colours.
+/// @param scope what stands before each selector, such as ":root[data-theme=dark] "
+std::string color_rules(std::string_view scope, const ChartInks& inks, const Palette& palette) {
+  const std::pair<std::string_view, std::string_view> named[] = {{"ink", inks.ink},
+                                                                 {"soft", inks.soft},
+                                                                 {"grid", inks.grid},
+                                                                 {"bar", inks.bar},
+                                                                 {"best", inks.best}};
+  std::string rules = fmt::format(
+      "{0}.fpc{{color:{1}}}{0}.fpc-paper{{fill:{2}}}{0}.fpc-halo{{stroke:{2}}}", scope, inks.ink,
+      inks.paper);
+  for (const auto& [name, color] : named) {
+    rules += fmt::format("{}.fpc-{}{{color:{}}}", scope, name, color);
   }
-  return result;
+  for (std::size_t i = 0; i < palette.size(); ++i) {
+    rules += fmt::format("{}.fpc-s{}{{color:{}}}", scope, i + 1, palette[i]);
+  }
+  return rules;
 }
 
 /// The style sheet of every chart. That of a page outweighs the reader's preference where it names
-/// a theme, since its selectors are more specific.
+/// a theme, since its selectors are more specific. Colours are written out: many programs that show
+/// or convert SVG know no variables of style sheets, and draw black.
 std::string drawing_style() {
-  const std::string light = variables(kLightInks, kLightPalette);
-  const std::string dark = variables(kDarkInks, kDarkPalette);
-  std::string result = fmt::format(
-      ".fpc{{{};color:var(--fpc-ink);font-variant-numeric:"
-      "tabular-nums}}\n",
-      light);
-  result += fmt::format("@media print{{.fpc{{{}}}}}\n", variables(kPrintInks, kLightPalette));
-  result += fmt::format("@media screen and (prefers-color-scheme:dark){{.fpc{{{}}}}}\n", dark);
-  result += fmt::format(
-      "@media screen{{:root[data-theme=light] .fpc{{{}}}\n:root[data-theme=dark] .fpc{{{}}}}}\n",
-      light, dark);
-  result += ".fpc-paper{fill:var(--fpc-paper)}.fpc-halo{stroke:var(--fpc-paper)}\n";
-  for (const std::string_view name : {"ink", "soft", "grid", "bar", "best"}) {
-    result += fmt::format(".fpc-{0}{{color:var(--fpc-{0})}}", name);
-  }
-  result += '\n';
-  for (std::size_t i = 1; i <= kLightPalette.size(); ++i) {
-    result += fmt::format(".fpc-s{0}{{color:var(--fpc-{0})}}", i);
-  }
-  return result;
+  std::string style = ".fpc{font-variant-numeric:tabular-nums}\n";
+  style += color_rules("", kLightInks, kLightPalette) + "\n";
+  style += fmt::format("@media print{{{}}}\n", color_rules("", kPrintInks, kLightPalette));
+  style += fmt::format("@media screen and (prefers-color-scheme:dark){{{}}}\n",
+                       color_rules("", kDarkInks, kDarkPalette));
+  style += fmt::format("@media screen{{{}\n{}}}",
+                       color_rules(":root[data-theme=light] ", kLightInks, kLightPalette),
+                       color_rules(":root[data-theme=dark] ", kDarkInks, kDarkPalette));
+  return style;
 }
 
 std::string_view light_ink(std::string_view name) {

@@ -43,7 +43,7 @@ inline constexpr double kTickSize = 12;
 
 /// Puts an SVG file together. Colours are set on groups, by a class whose value the style sheet
 /// gives for light, dark and print; the elements below use `currentColor`. The light colour stands
-/// in an attribute as well, for programs that know no variables of style sheets.
+/// in an attribute as well, for programs that know no style sheets.
 ///
 /// Nothing has an id, and all charts share one style sheet, so that any number of them can stand in
 /// one HTML page. `data-theme="light"` or `"dark"` on the page's root decides over the reader's

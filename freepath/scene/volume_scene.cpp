@@ -1,6 +1,7 @@
 #include "freepath/scene/volume_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -11,6 +12,8 @@
 #include "freepath/io/image.h"
 #include "freepath/media/walk_space.h"
 #include "freepath/render/sky.h"
+#include "freepath/render/thermal_radiance.h"
+#include "freepath/spectra/rgb_color_space.h"
 
 namespace freepath {
 namespace {
@@ -36,17 +39,39 @@ void set_coefficients(const OpticalProperties& optics, Component& component) {
   component.sigma_s *= optics.density_scale;
 }
 
+/// Black bodies of a volume's temperatures, in R, G and B (sRGB).
+std::array<RadianceField, kChannels> glow_of(const Volume& volume) {
+  const TemperatureEmission emission{volume.temperature, volume.optics.temperature_scale,
+                                     volume.optics.temperature_offset};
+  const RgbColorSpace& space = rgb_color_space("srgb");
+  const auto fields = tabulate_radiance(emission, [&](double kelvin) {
+    const Vec3d rgb = space.from_xyz(thermal_xyz(kelvin));
+    Channels radiance;
+    for (int c = 0; c < kChannels; ++c) radiance[c] = static_cast<float>(rgb[c]);
+    return radiance;
+  });
+  return {fields[0], fields[1], fields[2]};
+}
+
 /// The components that a volume contributes.
 void add_components(Volume volume, std::vector<Component>& components) {
   const std::size_t densities = volume.densities.size();
   if (densities != 1 && densities != kChannels) {
     fail("a volume has one density, or three for R, G and B, not {}", densities);
   }
+  std::array<RadianceField, kChannels> glow;
+  Spectrum emission = volume.optics.emission.value_or(Spectrum(0.0F));
+  if (volume.temperature) {
+    glow = glow_of(volume);
+    const Spectrum scale = volume.optics.emission.value_or(Spectrum(1.0F));
+    emission = glow[0].field ? scale : Spectrum(0.0F);
+  }
   for (std::size_t i = 0; i < densities; ++i) {
     Component component;
+    component.radiance = glow;
     component.density = std::make_shared<const Field>(std::move(volume.densities[i]));
     component.phase = volume.optics.phase;
-    component.emission = volume.optics.emission;
+    component.emission = emission;
     set_coefficients(volume.optics, component);
     if (densities > 1) {
       Spectrum only(0.0F);

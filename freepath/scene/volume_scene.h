@@ -1,6 +1,7 @@
 #pragma once
 /// @file The scene around bare volumes: their medium, a camera that sees all of it, sun and sky.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -20,7 +21,10 @@ struct OpticalProperties {
   std::optional<Spectrum> sigma_a;  ///< [1/m per unit of density] with sigma_s replaces the albedo;
   std::optional<Spectrum> sigma_s;  ///< of the two the one that is not given is 0.
   PhaseFunction phase = {};
-  Spectrum emission{0.0F};  ///< L_e
+  /// L_e; with temperatures, what multiplies their black bodies' radiance, 1 if it is not given.
+  std::optional<Spectrum> emission;
+  double temperature_scale = 1;   ///< [K per unit of the field]
+  double temperature_offset = 0;  ///< Value of the field at 0 K.
 };
 
 /// Densities with one set of optical properties.
@@ -29,6 +33,8 @@ struct Volume {
   /// alone.
   std::vector<Field> densities;
   OpticalProperties optics;
+  /// Temperatures, where it glows as black bodies of them (TemperatureEmission).
+  std::shared_ptr<const Field> temperature = nullptr;
 };
 
 /// The daylight sky.

@@ -5,75 +5,20 @@
 #include <utility>
 
 #include "freepath/base/error.h"
-#include "freepath/spectra/blackbody.h"
-#include "freepath/spectra/cie_observer.h"
 
 namespace freepath {
 namespace {
 
-/// Below this a black body of the scene language emits nothing [K].
-constexpr double kCoolest = 100;
-
-/// Steps of a table of thermal radiance: at 1500 K a step of 2 K changes violet, the steepest, by
-/// 3 %, so that a straight line is off by 1e-4.
-constexpr double kTableStep = 2;             // [K]
-constexpr std::size_t kLargestTable = 8192;  // values, beyond which steps grow
-
-/// Pbrt's films do not divide by the integral of the luminous efficiency, and lights are normalised
-/// for it; emission in media is not.
-constexpr double kMediumRadiance = kLuminousIntegral;
-
-struct Range {
-  float low = 0, high = 0;
-};
-
-Range range_of(const Field& field) {
-  Range range;
-  for (const float value : field.voxels.voxels()) {
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  }
-  return range;
-}
-
-Channels thermal_radiance(double temperature, const SpectrumValues& spectra) {
+Channels thermal_channels(double temperature, const SpectrumValues& spectra) {
   Channels radiance;
-  if (!(temperature > kCoolest)) return radiance;
-  const BlackbodySpectrum body(temperature, BlackbodyScale::kPeak);
-  if (spectra.is_spectral()) {
-    for (int i = 0; i < spectra.channels(); ++i) {
-      radiance[i] = static_cast<float>(kMediumRadiance * body(spectra.wavelengths()[i]));
-    }
-    return radiance;
+  if (!spectra.is_spectral()) {
+    const Vec3d rgb = spectra.rgb_of_xyz(thermal_xyz(temperature));
+    return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
   }
-  const Vec3d rgb = spectra.rgb_of_xyz(observe(body)) * kMediumRadiance;
-  return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
-}
-
-/// The tables of the channels' radiance by the field's value.
-void set_temperature(const TemperatureEmission& emission, const SpectrumValues& spectra,
-                     ComponentChannels& target) {
-  const Range range = range_of(*emission.field);
-  const auto temperature = [&](double value) { return (value - emission.offset) * emission.scale; };
-  const double hottest = std::max(temperature(range.low), temperature(range.high));
-  if (!(hottest > kCoolest)) return;
-  const double wanted = std::clamp(hottest / kTableStep, 16.0, double{kLargestTable});
-  const auto nodes = static_cast<std::size_t>(wanted);
-  // Of a field that is the same everywhere any step will do.
-  const float width = range.high > range.low ? range.high - range.low : 1.0F;
-  const float step = width / static_cast<float>(nodes - 1);
-  std::array<std::vector<float>, kMaxChannels> tables;
-  for (std::size_t i = 0; i < nodes; ++i) {
-    const double value = range.low + static_cast<double>(step) * static_cast<double>(i);
-    const Channels radiance = thermal_radiance(temperature(value), spectra);
-    for (int c = 0; c < kMaxChannels; ++c) tables[c].push_back(radiance[c]);
+  for (int i = 0; i < spectra.channels(); ++i) {
+    radiance[i] = static_cast<float>(thermal_radiance(temperature, spectra.wavelengths()[i]));
   }
-  for (int c = 0; c < kMaxChannels; ++c) {
-    target.radiance[c] = {emission.field,
-                          std::make_shared<const std::vector<float>>(std::move(tables[c])),
-                          range.low, step};
-    target.emission[c] = 1;
-  }
+  return radiance;
 }
 
 /// One number for each voxel, x fastest, as a field.
@@ -130,8 +75,10 @@ BoundMedium SceneMedium::bind(const SpectrumValues& spectra) const {
       target.radiance[c].field = component.radiance_field;
     }
     if (component.temperature) {
-      set_temperature(*component.temperature, spectra, target);
-      for (float& emission : target.emission) emission *= component.radiance_scale;
+      const auto fields = tabulate_radiance(
+          *component.temperature, [&](double kelvin) { return thermal_channels(kelvin, spectra); });
+      std::copy(fields.begin(), fields.end(), target.radiance.begin());
+      target.emission.fill(fields[0].field ? component.radiance_scale : 0);
     }
   }
   return bound;

@@ -13,18 +13,11 @@
 #include "freepath/media/medium.h"
 #include "freepath/media/medium_channels.h"
 #include "freepath/media/phase/phase_function.h"
+#include "freepath/render/thermal_radiance.h"
 #include "freepath/spectra/rgb_spectrum.h"
 #include "freepath/spectra/spectrum_table.h"
 
 namespace freepath {
-
-/// Thermal emission by a field of temperatures: a black body of scale · (value - offset) kelvins,
-/// its spectrum scaled to a maximum of 1 (pbrt's convention), and nothing at 100 K or less.
-struct TemperatureEmission {
-  std::shared_ptr<const Field> field;
-  double scale = 1;
-  double offset = 0;
-};
 
 /// One density and what it does to light.
 struct SceneMediumComponent {
