@@ -191,13 +191,14 @@ TEST(Chart, GivesTheSameBytesAgain) {
 TEST(Chart, HoldsTheColoursOfBothSchemesAndOfPaper) {
   const std::string svg = to_svg(points({1}, {1}));
   for (std::size_t i = 0; i < kLightPalette.size(); ++i) {
-    const std::string name = "--fpc-" + std::to_string(i + 1) + ":";
+    const std::string name = ".fpc-s" + std::to_string(i + 1) + "{color:";
     EXPECT_NE(svg.find(name + std::string(kLightPalette[i])), std::string::npos);
     EXPECT_NE(svg.find(name + std::string(kDarkPalette[i])), std::string::npos);
   }
   EXPECT_NE(svg.find("prefers-color-scheme:dark"), std::string::npos);
   EXPECT_NE(svg.find("data-theme=dark"), std::string::npos);
   EXPECT_NE(svg.find("@media print"), std::string::npos);
+  EXPECT_EQ(svg.find("var("), std::string::npos) << "converters know no variables, and draw black";
 }
 
 TEST(Chart, CanStandBesideOthersInOnePage) {

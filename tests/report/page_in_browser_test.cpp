@@ -1,5 +1,6 @@
 // What a browser makes of a page. Skipped where there is no Chromium.
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -248,23 +249,40 @@ TEST_F(PageInBrowser, MapsAreEnlarged) {
             "true weighted_delta decomposition true false");
 }
 
-TEST_F(PageInBrowser, NothingIsWiderThanANarrowWindow) {
-  // A frame can be narrower than a browser's window; it reports what it measures.
+TEST_F(PageInBrowser, NothingIsHiddenBesideOrBelowWhateverTheWindow) {
+  // A frame can be narrower than a browser's window; it reports what it measures: the width of the
+  // page, what juts out, and what would have to be scrolled within the page to be seen.
   const std::string measure = html_ + R"js(<script>
-    const wide = [...document.querySelectorAll('.card, h1, h2, p, .tools *')].filter(
+    const wide = [...document.querySelectorAll('.card, h1, h2, p, .tools *, .code *, td')].filter(
         element => element.getBoundingClientRect().right > innerWidth);
-    parent.postMessage([innerWidth, document.documentElement.scrollWidth, wide.length].join(' '),
-                       '*');
+    const cut = [...document.querySelectorAll('.scroll, .code pre')].filter(
+        element => element.scrollWidth > element.clientWidth + 1 ||
+                   element.scrollHeight > element.clientHeight + 1);
+    parent.postMessage([innerWidth, document.documentElement.scrollWidth, wide.length,
+                        cut.length].join(' '), '*');
   </script>)js";
-  write("narrow.html", measure);
-  EXPECT_EQ(probe("<!DOCTYPE html><body></body>", R"js(
-    const frame = document.createElement('iframe');
-    Object.assign(frame, {width: 390, height: 800, src: 'narrow.html'});
-    const answer = new Promise(done => window.addEventListener('message', e => done(e.data)));
-    document.body.append(frame);
-    return answer;
-  )js"),
-            "390 390 0");
+  write("sized.html", measure);
+  for (const int width : {390, 1280}) {
+    const std::string script = fmt::format(R"js(
+      const frame = document.createElement('iframe');
+      Object.assign(frame, {{width: {}, height: 800, src: 'sized.html'}});
+      const answer = new Promise(done => window.addEventListener('message', e => done(e.data)));
+      document.body.append(frame);
+      return answer;
+    )js",
+                                           width);
+    const std::string seen = probe("<!DOCTYPE html><body></body>", script);
+    // A bar for scrolling the page itself may take some of the width.
+    int inner = 0;
+    int page = 0;
+    int wide = -1;
+    int cut = -1;
+    ASSERT_EQ(std::sscanf(seen.c_str(), "%d %d %d %d", &inner, &page, &wide, &cut), 4) << seen;
+    EXPECT_EQ(inner, width);
+    EXPECT_LE(page, inner);
+    EXPECT_EQ(wide, 0) << width;
+    EXPECT_EQ(cut, 0) << width;
+  }
 }
 
 TEST_F(PageInBrowser, ShowsAllPicturesWithoutScripts) {
