@@ -97,9 +97,8 @@ void print_volume_warnings(const LoadedField& loaded) {
 void warn_of_temperatures(const VolumePlan& plan, const LoadedField& loaded) {
   const std::string& name = loaded.field.name;
   if (!name.starts_with("temperature") && name != "heat" && name != "flame") return;
-  warn(
-      "{}: grid '{}', up to {:.4g}, is rendered as a density; temperatures are --temperature {}",
-      plan.file, name, loaded.maximum, name);
+  warn("{}: grid '{}', up to {:.4g}, is rendered as a density; temperatures are --temperature {}",
+       plan.file, name, loaded.maximum, name);
 }
 
 }  // namespace
@@ -117,14 +116,15 @@ std::vector<VolumePlan> plan_volumes(const VolumeOptions& options) {
     const std::string* const temperature =
         value_for(volume, options.files.size(), options.temperature, "--temperature");
     if (temperature != nullptr && *temperature != "none") {
-      plans.back().temperature = LoadOptions{.selection = parse_grid_selection(*temperature),
-                                             .scalar_only = true};
+      plans.back().temperature =
+          LoadOptions{.selection = parse_grid_selection(*temperature), .scalar_only = true};
     }
   }
   if (options.temperature.empty() &&
       !(options.temperature_scale.empty() && options.temperature_offset.empty())) {
-    fail("--temperature-scale and --temperature-offset are of a grid of temperatures; name it by "
-         "--temperature");
+    fail(
+        "--temperature-scale and --temperature-offset are of a grid of temperatures; name it by "
+        "--temperature");
   }
   return plans;
 }
@@ -177,7 +177,8 @@ void add_volume_options(CLI::App& command, VolumeOptions& o) {
       "Emitted radiance L_e, V or R,G,B; the source is sigma_a L_e [0]; with --temperature what "
       "multiplies the black body's [1]");
   add("--temperature", o.temperature,
-      "Grid of temperatures, by name or number: the volume glows as black bodies of them, as far as "
+      "Grid of temperatures, by name or number: the volume glows as black bodies of them, as far "
+      "as "
       "it absorbs; none for a volume without");
   add("--temperature-scale", o.temperature_scale, "Kelvins in a unit of that grid [1]")
       ->check(kFiniteNumber);

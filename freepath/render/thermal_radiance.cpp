@@ -63,8 +63,8 @@ std::array<RadianceField, kMaxChannels> tabulate_radiance(
     for (int c = 0; c < kMaxChannels; ++c) tables[c].push_back(emitted[c]);
   }
   for (int c = 0; c < kMaxChannels; ++c) {
-    fields[c] = {emission.field,
-                 std::make_shared<const std::vector<float>>(std::move(tables[c])), range.low, step};
+    fields[c] = {emission.field, std::make_shared<const std::vector<float>>(std::move(tables[c])),
+                 range.low, step};
   }
   return fields;
 }

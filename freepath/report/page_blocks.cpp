@@ -182,8 +182,7 @@ std::string block_html(const PageTable& block) {
                       escape_markup(block.caption.empty() ? "Table" : block.caption));
   constexpr std::size_t kMany = 4;  // columns that a phone has no room for
   html += fmt::format("<table{} style=\"--columns:{}\">\n",
-                      block.columns.size() >= kMany ? " class=\"many\"" : "",
-                      block.columns.size());
+                      block.columns.size() >= kMany ? " class=\"many\"" : "", block.columns.size());
   html += "<thead><tr>";
   for (const PageColumn& column : block.columns) html += head_html(column);
   html += "</tr></thead>\n<tbody>\n";

@@ -21,9 +21,9 @@ std::string color_rules(std::string_view scope, const ChartInks& inks, const Pal
                                                                  {"grid", inks.grid},
                                                                  {"bar", inks.bar},
                                                                  {"best", inks.best}};
-  std::string rules = fmt::format(
-      "{0}.fpc{{color:{1}}}{0}.fpc-paper{{fill:{2}}}{0}.fpc-halo{{stroke:{2}}}", scope, inks.ink,
-      inks.paper);
+  std::string rules =
+      fmt::format("{0}.fpc{{color:{1}}}{0}.fpc-paper{{fill:{2}}}{0}.fpc-halo{{stroke:{2}}}", scope,
+                  inks.ink, inks.paper);
   for (const auto& [name, color] : named) {
     rules += fmt::format("{}.fpc-{}{{color:{}}}", scope, name, color);
   }

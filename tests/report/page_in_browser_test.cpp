@@ -8,6 +8,7 @@
 #include <regex>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "freepath/report/chart_colors.h"

@@ -62,9 +62,9 @@ TEST(Page, EscapesAllTexts) {
   EXPECT_EQ(html.find("<b x"), std::string::npos);
   EXPECT_EQ(count(html, "</script>"), 2U) << "its own two";
   // Title twice, subtitle, heading and its line in the contents, text, code; of the table name,
-  // meaning, cell, note and caption twice; file name and caption; of pictures two options, name
-  // twice, caption; of maps name twice, three values, caption.
-  EXPECT_EQ(count(html, escape_markup(evil)), 7 + 6 + 2 + 5 + 6U);
+  // meaning, cell and the name it has there, note and caption twice; file name and caption; of
+  // pictures two options, name twice, caption; of maps name twice, three values, caption.
+  EXPECT_EQ(count(html, escape_markup(evil)), 7 + 7 + 2 + 5 + 6U);
 }
 
 TEST(Page, RefersToNothingOutside) {
@@ -102,7 +102,8 @@ TEST(Page, CellsOfNumbersSayWhatTheyAreSortedBy) {
   table.columns = {{"name", "", false}, {"value", ""}};
   table.rows = {{{"a"}, {"1.5 k", 1500}}, {{"b"}, {"–", std::nan("")}}, {{"c"}, {"∞", HUGE_VAL}}};
   const std::string html = html_of(table);
-  EXPECT_NE(html.find("<td>a</td><td class=\"number\" data-number=\"1500\">1.5 k</td>"),
+  EXPECT_NE(html.find("<td data-label=\"name\">a</td>"
+                      "<td class=\"number\" data-label=\"value\" data-number=\"1500\">1.5 k</td>"),
             std::string::npos);
   EXPECT_NE(html.find("data-number=\"NaN\""), std::string::npos);
   EXPECT_NE(html.find("data-number=\"Infinity\""), std::string::npos);
