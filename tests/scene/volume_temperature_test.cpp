@@ -1,0 +1,97 @@
+// Bare volumes that glow by a field of temperatures.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "freepath/render/renderer.h"
+#include "freepath/scene/volume_scene.h"
+#include "freepath/spectra/blackbody.h"
+#include "freepath/spectra/cie_observer.h"
+#include "freepath/spectra/rgb_color_space.h"
+#include "tests/statistics.h"
+#include "tests/transport/media_for_tests.h"
+
+namespace freepath::testing {
+namespace {
+
+constexpr int kEdge = 8;          // of a cube [voxels], whose edge is 1 in the world
+constexpr double kTemperature = 1900;  // [K]
+
+std::shared_ptr<Field> glowing_cube(float value) {
+  Matrix4d index_to_world;
+  index_to_world.setScale(Vec3d(1.0 / kEdge));
+  return make_field(
+      Vec3i(0), Vec3i(kEdge - 1), [value](const Vec3i&) { return value; }, index_to_world);
+}
+
+/// The picture's mean of a cube of optical thickness 1 that emits and scatters nothing, seen face
+/// on from far away.
+std::array<RunningStatistics, 3> seen_through(OpticalProperties optics, const char* tracker) {
+  std::vector<Volume> volumes(1);
+  volumes[0].densities.push_back(*glowing_cube(1));
+  // The field holds degrees of another scale.
+  volumes[0].temperature = glowing_cube(static_cast<float>((kTemperature - 300) / 2));
+  optics.albedo = Spectrum(0.0F);
+  optics.temperature_scale = 2;
+  optics.temperature_offset = -150;
+  volumes[0].optics = std::move(optics);
+  const Medium medium = make_medium(std::move(volumes), 0);
+  const Vec3d middle = medium.world_bounds().center();
+  CameraOptions view{.width = 8, .height = 8, .fov = 1e-3, .from = {}, .at = middle};
+  view.from = middle + Vec3d(0, 0, 500);
+  const Camera camera = make_camera(medium, view, UpAxis::kY);
+  RenderSettings settings;
+  settings.samples = 2048;
+  settings.walk.tracker = tracker;
+  settings.walk.interpolation = Interpolation::kNearest;
+  const RenderResult result =
+      render(medium, camera, Lights(ConstantEnvironment(Spectrum(0.0F))), settings);
+  const Image image = result.film.to_image(LayerSet::standard());
+  std::array<RunningStatistics, 3> means;
+  for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
+    for (int c = 0; c < 3; ++c) {
+      means[c].add(image.values[pixel * image.channels.size() + c]);
+    }
+  }
+  return means;
+}
+
+TEST(VolumeTemperature, AHotCubeIsABlackBodySeenThroughItsOwnExtinction) {
+  const BlackbodySpectrum body(kTemperature, BlackbodyScale::kPeak);
+  const Vec3d radiance =
+      rgb_color_space("srgb").from_xyz(observe(body)) * kLuminousIntegral * (1 - std::exp(-1.0));
+  for (const char* tracker : {"delta", "spectral", "decomposition"}) {
+    const auto means = seen_through({}, tracker);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_TRUE(check_mean(tracker, means[c].mean(), means[c].standard_error(),
+                             means[c].count(), radiance[c], {4, 0, 0.003}));
+    }
+  }
+}
+
+TEST(VolumeTemperature, TheEmittedRadianceIsMultiplied) {
+  OpticalProperties optics;
+  optics.emission = Spectrum(0.5F, 0.0F, 2.0F);
+  const auto plain = seen_through({}, "delta");
+  const auto scaled = seen_through(optics, "delta");
+  EXPECT_NEAR(scaled[0].mean() / plain[0].mean(), 0.5, 1e-5);
+  EXPECT_EQ(scaled[1].mean(), 0);
+  EXPECT_NEAR(scaled[2].mean() / plain[2].mean(), 2, 1e-5);
+}
+
+TEST(VolumeTemperature, WhatIsColdDoesNotGlow) {
+  OpticalProperties optics;
+  std::vector<Volume> volumes(1);
+  volumes[0].densities.push_back(*glowing_cube(1));
+  volumes[0].temperature = glowing_cube(90);  // [K]
+  EXPECT_FALSE(make_medium(std::move(volumes), 0).emits());
+}
+
+}  // namespace
+}  // namespace freepath::testing
