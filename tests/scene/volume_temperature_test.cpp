@@ -20,7 +20,7 @@
 namespace freepath::testing {
 namespace {
 
-constexpr int kEdge = 8;          // of a cube [voxels], whose edge is 1 in the world
+constexpr int kEdge = 8;               // of a cube [voxels], whose edge is 1 in the world
 constexpr double kTemperature = 1900;  // [K]
 
 std::shared_ptr<Field> glowing_cube(float value) {
@@ -69,8 +69,8 @@ TEST(VolumeTemperature, AHotCubeIsABlackBodySeenThroughItsOwnExtinction) {
   for (const char* tracker : {"delta", "spectral", "decomposition"}) {
     const auto means = seen_through({}, tracker);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_TRUE(check_mean(tracker, means[c].mean(), means[c].standard_error(),
-                             means[c].count(), radiance[c], {4, 0, 0.003}));
+      EXPECT_TRUE(check_mean(tracker, means[c].mean(), means[c].standard_error(), means[c].count(),
+                             radiance[c], {4, 0, 0.003}));
     }
   }
 }

@@ -65,8 +65,7 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) 
     return true;
   };
   while (begin < shadow.end.distance) {
-    const auto hit =
-        surfaces.intersect(origin, shadow.direction, 0, shadow.end.distance - begin);
+    const auto hit = surfaces.intersect(origin, shadow.direction, 0, shadow.end.distance - begin);
     if (!hit) break;
     ties_.clear();
     if (hit->is_tied) surfaces.find_ties(origin, shadow.direction, *hit, ties_);
