@@ -27,7 +27,7 @@ class GzipReader {
 
   /// Unpacked bytes for each packed one, at most: a match takes two bits at least, and stands for
   /// 258 bytes at most.
-  static constexpr std::size_t kLargestRatio = 4 * 258;
+  static constexpr std::size_t kLargestRatio = std::size_t{4} * 258;
   /// Unpacked bytes of so many packed ones, at most.
   static std::size_t largest_size(std::size_t packed);
 

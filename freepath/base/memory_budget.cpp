@@ -33,8 +33,8 @@ uint64_t least_present() {
 }  // namespace
 
 uint64_t memory_present() {
-  static const uint64_t present = least_present();
-  return present;
+  static const uint64_t kPresent = least_present();
+  return kPresent;
 }
 
 void check_memory_present(std::string_view name, std::string_view what, double needed) {

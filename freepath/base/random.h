@@ -89,7 +89,7 @@ constexpr float exponential_from_words(uint32_t bits, uint32_t second) {
   // x = 2^k m, with m from sqrt(1/2) to sqrt(2)
   const uint32_t shifted = std::bit_cast<uint32_t>(x) + (kOneBits - kRootHalfBits);
   const int32_t k = static_cast<int32_t>(shifted >> 23) - 127;
-  const float m = std::bit_cast<float>((shifted & 0x007FFFFFU) + kRootHalfBits);
+  const auto m = std::bit_cast<float>((shifted & 0x007FFFFFU) + kRootHalfBits);
   const float f = k == 0 ? -v : m - 1.0F;
   const float s = f / (2.0F + f);
   const float z = s * s;

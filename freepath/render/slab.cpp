@@ -134,6 +134,8 @@ SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& set
     reason = std::move(choice.reason);
   }
   check_growth(layers, slab, walk);
+  // Weights that grow would split without end.
+  if (!weight_growth(channels_of(slab.medium, 0), walk).bounded()) slab.splits.clear();
   // Layers are grey: a tracker that would give each channel its own path needs one.
   const Walker walker(slab.medium, walk,
                       shares_paths(slab.medium, walk) ? Walker::kAllChannels : 0);
