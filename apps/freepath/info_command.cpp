@@ -6,7 +6,9 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/freepath/commands.h"
@@ -79,7 +81,7 @@ Placement placement_of(const Matrix4d& matrix) {
   return placement;
 }
 
-/// Bounds of the active voxels, whole voxels, in the world.
+/// Bounds of the voxels that count, whole voxels, in the world.
 Box3d world_bounds(const GridInfo& info) {
   Box3d box;
   for (int corner = 0; corner < 8; ++corner) {
@@ -204,7 +206,8 @@ std::string grid_text(const Described& grid) {
   row("type", fmt::format("{}, {}", info.type, info.grid_class));
   row("voxel size", fmt::format("{:.6g} x {:.6g} x {:.6g}", voxel.x, voxel.y, voxel.z));
   row("transform", transform_text(info));
-  if (info.active_voxels > 0) {
+  if (info.empty() && info.loadable) row("active", "no voxels: it is empty");
+  if (!info.empty()) {
     const Vec3i size = info.active_max - info.active_min + Vec3i(1);
     const Box3d box = world_bounds(info);
     row("world bounds",
@@ -216,6 +219,10 @@ std::string grid_text(const Described& grid) {
     row("range", ranges_text(info));
     row("active", fmt::format("{} voxels, {} constant tiles among them", info.active_voxels,
                               info.active_tiles));
+    if (info.inactive_voxels > 0) {
+      row("inactive",
+          fmt::format("{} voxels that are not 0 and count as they are", info.inactive_voxels));
+    }
   }
   row("in the file", size_text(static_cast<double>(info.stored_bytes)));
   if (!grid.loaded.empty()) {
@@ -251,6 +258,7 @@ nlohmann::json grid_json(const Described& grid) {
                       {"voxel_size", to_json(placement.voxel_size)},
                       {"active_voxels", info.active_voxels},
                       {"active_tiles", info.active_tiles},
+                      {"inactive_voxels", info.inactive_voxels},
                       {"stored_bytes", info.stored_bytes},
                       {"loadable", info.loadable}};
   for (int row = 0; row < 4; ++row) {
@@ -258,7 +266,7 @@ nlohmann::json grid_json(const Described& grid) {
     json["index_to_world"].push_back({m[0], m[1], m[2], m[3]});
   }
   if (!info.loadable) json["reason"] = info.reason;
-  if (info.active_voxels > 0) {
+  if (!info.empty()) {
     const Box3d box = world_bounds(info);
     json["world_bounds"] = {{"min", to_json(box.min)}, {"max", to_json(box.max)}};
     json["active_bounds"] = {{"min", to_json(info.active_min)}, {"max", to_json(info.active_max)}};
@@ -301,23 +309,14 @@ nlohmann::json grid_json(const Described& grid) {
   return json;
 }
 
-/// Loads what can be loaded, one grid at a time being in memory.
+/// Reads each grid once, one at a time being in memory.
 template <class Use>
 void for_each_grid(const InfoOptions& options, Use use) {
-  std::vector<GridInfo> grids = list_grids(options.file);
-  if (!options.grid.empty()) {
-    const GridInfo chosen = find_grid(options.file, grids, parse_grid_selection(options.grid));
-    grids = {chosen};
-  }
-  for (const GridInfo& info : grids) {
-    Described described{info, {}};
-    if (info.loadable) {
-      LoadOptions load;
-      load.selection.index = info.index;
-      described.loaded = load_fields(options.file, load);
-    }
-    use(described);
-  }
+  std::optional<GridSelection> only;
+  if (!options.grid.empty()) only = parse_grid_selection(options.grid);
+  visit_grids(options.file, only, {}, [&](const GridInfo& info, std::vector<LoadedField> loaded) {
+    use(Described{info, std::move(loaded)});
+  });
 }
 
 void run(const InfoOptions& options) {

@@ -133,6 +133,7 @@ std::vector<VolumePlan> read_volumes(const PictureOptions& options) {
 
 LightOptions read_lights(const PictureOptions& options) {
   LightOptions lights;
+  lights.invalid = read_invalid(options.volumes);
   const bool default_lights = options.environment.empty() || options.environment == "sky";
   if (looks_numeric(options.environment)) {
     lights.environment = parse_spectrum(options.environment, "--environment");

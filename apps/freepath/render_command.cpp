@@ -1,6 +1,9 @@
 // freepath render: a volume file in, pictures out.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -34,7 +37,7 @@ which needs one homogeneous density.
 With --frames, volumes whose names have a place for the number of a frame change from frame to frame,
 and the others stay; every picture and --stats need a place where there are several frames. %d is the
 number, %04d or #### has at least four digits, %% is a percent sign. The camera is framed once, from
-the first frame, unless --look-at places it; --seed is the same for all frames; --time is that of each
+the first frame that is not empty, unless --look-at places it; --seed is the same for all frames; --time is that of each
 frame. Ctrl-C writes the frame under way and ends the sequence.
 
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
@@ -89,6 +92,7 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
   plan.settings = read_settings(options);
   plan.exposure = options.exposure;
   plan.film = read_film_options(options.film);
+  plan.invalid = read_invalid(options.picture.volumes);
   if (given("--size")) plan.size = parse_size(options.picture.size, "--size");
   if (given("--spp")) plan.samples = options.samples;
   if (given("--seed")) plan.seed = options.picture.seed;
@@ -113,14 +117,17 @@ void run(const CLI::App& command, const RenderOptions& options) {
                                      .stats = options.stats});
   const UpAxis up = read_up(options.picture);
   const FilmPlan film = read_film_options(options.film);
+  std::vector<std::string> warnings;
   const RenderPlan plan{.settings = read_settings(options),
                         .volumes = read_volumes(options.picture),
                         .film = film,
                         .camera = read_camera(options.picture, film),
                         .up = up,
-                        .lights = make_lights(read_lights(options.picture), up),
+                        .lights = make_lights(read_lights(options.picture), up, &warnings),
                         .super_voxel = options.picture.super_voxel,
                         .exposure = options.exposure};
+  for (const std::string& warning : warnings)
+    fmt::print(stderr, "freepath: warning: {}\n", warning);
   if (options.frames.empty()) {
     render_picture(plan, pictures.front());
   } else {

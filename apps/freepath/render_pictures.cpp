@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,19 @@ Medium load_medium(const RenderPlan& plan, const PictureFiles& files, RenderRepo
   Medium medium = make_medium(std::move(volumes), plan.super_voxel);
   report.seconds_build = watch.lap();
   return medium;
+}
+
+/// The camera of a sequence: framed from its first frame that holds something, whose volumes are
+/// loaded for that where it is not this one.
+Camera frame_sequence(const RenderPlan& plan, std::span<const PictureFiles> frames,
+                      const Medium& first) {
+  const bool framed = !plan.camera.from;
+  for (std::size_t i = 1; framed && is_empty(first) && i < frames.size(); ++i) {
+    RenderReport ignored;
+    const Medium medium = load_medium(plan, frames[i], ignored);
+    if (!is_empty(medium)) return make_camera(medium, plan.camera, plan.up);
+  }
+  return make_camera(first, plan.camera, plan.up);
 }
 
 /// The tracker to walk with, after saying what users must know of it.
@@ -139,7 +153,7 @@ void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& fram
       RenderReport report;
       const Medium medium = load_medium(plan, files, report);
       Stopwatch watch;
-      if (!camera) camera = make_camera(medium, plan.camera, plan.up);
+      if (!camera) camera = frame_sequence(plan, std::span(frames).subspan(i), medium);
       tracker = settle_tracker(plan.settings.walk.tracker, medium, tracker);
       report.seconds_build += watch.lap();
       if (stop.requested()) {

@@ -27,6 +27,7 @@ struct ScenePlan {
   std::optional<Interpolation> interpolation;
   ColorMode color = ColorMode::kSpectral;
   RenderSettings settings;  ///< All else.
+  InvalidPolicy invalid = InvalidPolicy::kZero;
   double exposure = 0;
   FilmPlan film;  ///< Its crop goes before the scene's.
 };

@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::array kNegatives{Choice<NegativePolicy>{"error", NegativePolicy::kError},
                                 Choice<NegativePolicy>{"clamp", NegativePolicy::kClamp}};
+constexpr std::array kInvalids{Choice<InvalidPolicy>{"error", InvalidPolicy::kError},
+                               Choice<InvalidPolicy>{"zero", InvalidPolicy::kZero}};
 
 /// The value for a volume, null where none is given.
 template <class Value>
@@ -67,14 +69,16 @@ OpticalProperties read_optics(const VolumeOptions& options, std::size_t volume) 
 }
 
 /// "density", or three names for R, G and B.
-std::vector<LoadOptions> read_grids(const std::string& text, NegativePolicy negative) {
+std::vector<LoadOptions> read_grids(const std::string& text, NegativePolicy negative,
+                                    InvalidPolicy invalid) {
   std::vector<LoadOptions> grids;
   std::string_view rest = text;
   for (bool last = false; !last;) {
     const std::size_t comma = rest.find(',');
     last = comma == std::string_view::npos;
-    grids.push_back(
-        {.selection = parse_grid_selection(rest.substr(0, comma)), .negative = negative});
+    grids.push_back({.selection = parse_grid_selection(rest.substr(0, comma)),
+                     .negative = negative,
+                     .invalid = invalid});
     if (!last) rest.remove_prefix(comma + 1);
   }
   if (grids.size() == 1) return grids;
@@ -103,21 +107,27 @@ void warn_of_temperatures(const VolumePlan& plan, const LoadedField& loaded) {
 
 }  // namespace
 
+InvalidPolicy read_invalid(const VolumeOptions& options) {
+  return parse_choice(options.invalid, "--invalid", kInvalids);
+}
+
 std::vector<VolumePlan> plan_volumes(const VolumeOptions& options) {
   const NegativePolicy negative = parse_choice(options.negative, "--negative", kNegatives);
   std::vector<VolumePlan> plans;
   for (std::size_t volume = 0; volume < options.files.size(); ++volume) {
     const std::string* const grid =
         value_for(volume, options.files.size(), options.grids, "--grid");
-    plans.push_back({options.files[volume],
-                     read_grids(grid != nullptr ? *grid : std::string(), negative),
-                     read_optics(options, volume),
-                     {}});
+    plans.push_back(
+        {options.files[volume],
+         read_grids(grid != nullptr ? *grid : std::string(), negative, read_invalid(options)),
+         read_optics(options, volume),
+         {}});
     const std::string* const temperature =
         value_for(volume, options.files.size(), options.temperature, "--temperature");
     if (temperature != nullptr && *temperature != "none") {
-      plans.back().temperature =
-          LoadOptions{.selection = parse_grid_selection(*temperature), .scalar_only = true};
+      plans.back().temperature = LoadOptions{.selection = parse_grid_selection(*temperature),
+                                             .invalid = read_invalid(options),
+                                             .scalar_only = true};
     }
   }
   if (options.temperature.empty() &&
@@ -131,13 +141,15 @@ std::vector<VolumePlan> plan_volumes(const VolumeOptions& options) {
 
 std::vector<Volume> load_volumes(const std::vector<VolumePlan>& plans,
                                  std::vector<VolumeReport>& report) {
-  std::vector<Volume> volumes;
+  std::vector<Volume> volumes, empty;
   for (const VolumePlan& plan : plans) {
     Volume volume{.densities = {}, .optics = plan.optics};
+    bool holds_something = false;
     report.push_back({plan.file, {}});
     for (const LoadOptions& grid : plan.grids) {
       for (LoadedField& loaded : load_fields(plan.file, grid)) {
         print_volume_warnings(loaded);
+        holds_something |= !loaded.empty();
         report.back().grids.push_back(loaded.field.name);
         warn_of_temperatures(plan, loaded);
         volume.densities.push_back(std::move(loaded.field));
@@ -149,9 +161,9 @@ std::vector<Volume> load_volumes(const std::vector<VolumePlan>& plans,
       report.back().grids.push_back(loaded.field.name);
       volume.temperature = std::make_shared<const Field>(std::move(loaded.field));
     }
-    volumes.push_back(std::move(volume));
+    (holds_something ? volumes : empty).push_back(std::move(volume));
   }
-  return volumes;
+  return volumes.empty() ? std::move(empty) : std::move(volumes);
 }
 
 void add_volume_options(CLI::App& command, VolumeOptions& o) {
@@ -185,6 +197,11 @@ void add_volume_options(CLI::App& command, VolumeOptions& o) {
   add("--temperature-offset", o.temperature_offset, "Value of that grid at 0 K [0]")
       ->check(kFiniteNumber);
   command.add_option("--negative", o.negative, "Negative densities: error or clamp")
+      ->capture_default_str()
+      ->group("Medium");
+  command
+      .add_option("--invalid", o.invalid,
+                  "Voxels and pixels that are NaN or infinite, of scenes too: error or zero")
       ->capture_default_str()
       ->group("Medium");
 }

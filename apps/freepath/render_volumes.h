@@ -23,7 +23,7 @@ struct VolumeOptions {
   std::vector<double> temperature_scale, temperature_offset;
   std::vector<std::string> phase;
   std::vector<std::string> albedo, sigma_a, sigma_s, radiance;
-  std::string negative = "error";
+  std::string negative = "error", invalid = "zero";
 };
 
 /// Adds all but the files.
@@ -41,7 +41,12 @@ struct VolumePlan {
 /// @throws Error naming the option
 std::vector<VolumePlan> plan_volumes(const VolumeOptions& options);
 
-/// Loads them, and tells warnings on standard error.
+/// What to do about voxels and pixels that are NaN or infinite.
+/// @throws Error naming the option
+InvalidPolicy read_invalid(const VolumeOptions& options);
+
+/// Loads them, and tells warnings on standard error. Empty volumes are left out where others are
+/// not.
 /// @param report gets a row for each volume
 /// @throws Error as load_fields
 std::vector<Volume> load_volumes(const std::vector<VolumePlan>& plans,

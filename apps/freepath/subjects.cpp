@@ -80,7 +80,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   const bool is_rgb = options.color.empty() && command.count("--wavelengths") == 0;
   plan.color = is_rgb ? ColorMode::kRgb : read_color(options);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
-  BuildOptions build;
+  BuildOptions build{.invalid = read_invalid(options.volumes)};
   if (size) {
     build.size = FilmSize{size->width, size->height};
   } else if (command.count("--size") > 0) {
@@ -135,7 +135,11 @@ LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<c
   camera_options.width = size.width;
   camera_options.height = size.height;
   const auto camera = std::make_shared<const Camera>(make_camera(*medium, camera_options, up));
-  const auto lights = std::make_shared<const Lights>(make_lights(read_lights(options), up));
+  std::vector<std::string> warnings;
+  const auto lights =
+      std::make_shared<const Lights>(make_lights(read_lights(options), up, &warnings));
+  for (const std::string& warning : warnings)
+    fmt::print(stderr, "freepath: warning: {}\n", warning);
   LoadedSubject loaded;
   loaded.settings = read_run_settings(options);
   loaded.film = size;

@@ -9,7 +9,7 @@ namespace freepath {
 std::string mend_invalid_pixels(Image& image, const std::string& name, InvalidPolicy policy) {
   const std::size_t channels = image.channels.size();
   std::vector<bool> is_colour(channels, channels == 1);
-  for (const char* const channel : {"R", "G", "B", "Y"}) {
+  for (const char* const channel : {"R", "G", "B", "Y", "A"}) {
     if (const auto found = find_channel(image, channel)) is_colour[*found] = true;
   }
   std::size_t count = 0, first = 0;

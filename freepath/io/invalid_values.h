@@ -12,8 +12,8 @@ namespace freepath {
 /// or put 0 in its place and say how many there were.
 enum class InvalidPolicy { kError, kZero };
 
-/// Puts 0 in place of the invalid values in the colour channels of an image (R, G, B, Y, or the
-/// only one), or refuses it.
+/// Puts 0 in place of the invalid values in the channels of colour and alpha of an image (R, G, B,
+/// Y, A, or the only one), or refuses it.
 /// @param name of the image, the beginning of messages
 /// @return a warning with the number of pixels and the place of the first, empty if there are none
 /// @throws Error that names the first pixel, under InvalidPolicy::kError

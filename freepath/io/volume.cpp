@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -22,12 +23,15 @@ Format format_of(const io::VolumeFile& file) {
   fail("{}: is not a volume file; .vdb (OpenVDB) and .nvdb (NanoVDB) can be read", file.name());
 }
 
-/// Calls a reader of a format, and gives errors that aren't about the contents the file's name.
-template <class Vdb, class Nvdb>
-auto read_volume(const std::filesystem::path& path, Vdb read_vdb, Nvdb read_nvdb) {
+/// Calls a function with a file's reader, and gives errors that aren't about the contents the
+/// file's name.
+template <class Use>
+auto with_reader(const std::filesystem::path& path, Use use) {
   const io::VolumeFile file(path);
   try {
-    return format_of(file) == Format::kVdb ? read_vdb(file) : read_nvdb(file);
+    const std::unique_ptr<io::VolumeReader> reader =
+        format_of(file) == Format::kVdb ? io::open_vdb(file) : io::open_nvdb(file);
+    return use(file, *reader);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -37,10 +41,61 @@ auto read_volume(const std::filesystem::path& path, Vdb read_vdb, Nvdb read_nvdb
   }
 }
 
+std::vector<LoadedField> finish(const io::VolumeReader& reader, const GridInfo& info,
+                                io::AssembledGrid read) {
+  std::vector<LoadedField> fields = std::move(*read.assembly).finish(info, read.scan);
+  reader.finish(info, fields);
+  return fields;
+}
+
+/// Reads a grid for its listing, and its fields too if they are to be kept.
+std::vector<LoadedField> visit_grid(const io::VolumeFile& file, const io::VolumeReader& reader,
+                                    const LoadOptions& options, bool keep_values, GridInfo& info) {
+  if (!reader.is_readable(info)) return {};
+  try {
+    io::AssembledGrid read = reader.read(info, options, keep_values && info.loadable);
+    read.assembly->describe(read.scan, info);
+    if (!keep_values || !info.loadable) return {};
+    std::vector<LoadedField> fields = finish(reader, info, std::move(read));
+    const Field& field = fields.front().field;
+    if (field.index_to_world != info.index_to_world) {  // it was resampled
+      info.index_to_world = field.index_to_world;
+      info.active_min = field.voxels.active_min();
+      info.active_max = field.voxels.active_max();
+    }
+    return fields;
+  } catch (const std::exception& error) {
+    io::set_failure(file.name(), error.what(), info);
+    return {};
+  }
+}
+
 }  // namespace
 
+std::vector<GridInfo> list_grid_heads(const std::filesystem::path& path) {
+  return with_reader(path, [](const io::VolumeFile& /*file*/, const io::VolumeReader& reader) {
+    return reader.heads();
+  });
+}
+
 std::vector<GridInfo> list_grids(const std::filesystem::path& path) {
-  return read_volume(path, io::list_vdb_grids, io::list_nvdb_grids);
+  return with_reader(path, [](const io::VolumeFile& file, const io::VolumeReader& reader) {
+    std::vector<GridInfo> grids = reader.heads();
+    for (GridInfo& info : grids) visit_grid(file, reader, {}, false, info);
+    return grids;
+  });
+}
+
+void visit_grids(const std::filesystem::path& path, const std::optional<GridSelection>& only,
+                 const LoadOptions& options, const GridVisitor& use) {
+  with_reader(path, [&](const io::VolumeFile& file, const io::VolumeReader& reader) {
+    std::vector<GridInfo> grids = reader.heads();
+    if (only) grids = {find_grid(path, grids, *only)};
+    for (GridInfo& info : grids) {
+      std::vector<LoadedField> fields = visit_grid(file, reader, options, true, info);
+      use(info, std::move(fields));
+    }
+  });
 }
 
 LoadedField load_field(const std::filesystem::path& path, const LoadOptions& options) {
@@ -51,9 +106,13 @@ LoadedField load_field(const std::filesystem::path& path, const LoadOptions& opt
 
 std::vector<LoadedField> load_fields(const std::filesystem::path& path,
                                      const LoadOptions& options) {
-  return read_volume(
-      path, [&](const io::VolumeFile& file) { return io::load_vdb_fields(file, options); },
-      [&](const io::VolumeFile& file) { return io::load_nvdb_fields(file, options); });
+  return with_reader(path, [&](const io::VolumeFile& file, const io::VolumeReader& reader) {
+    const std::vector<GridInfo> grids = reader.heads();
+    const GridInfo& info = find_grid(file.name(), grids, options.selection);
+    io::check_selected(file.name(), info, options);
+    io::AssembledGrid read = reader.read(info, options, true);
+    return finish(reader, info, std::move(read));
+  });
 }
 
 }  // namespace freepath

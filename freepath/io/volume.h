@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "freepath/base/vector.h"
+#include "freepath/io/invalid_values.h"
 #include "freepath/media/field.h"
 
 namespace freepath {
@@ -18,7 +20,8 @@ namespace freepath {
 /// What the channels of a grid of vectors are taken for.
 inline constexpr char kChannelNames[] = {'R', 'G', 'B'};
 
-/// Least and largest active value of a channel; 0 where there are none.
+/// Least and largest value of a channel, of its active voxels and those inactive ones that are not
+/// 0; 0 where there are none.
 struct GridRange {
   float minimum = 0, maximum = 0;
 };
@@ -27,24 +30,35 @@ struct GridRange {
 struct GridInfo {
   std::string name;        ///< With a suffix where several share it: "density", "density[1]".
   int index = 0;           ///< Place in the file, from 0.
-  std::string type;        ///< Of a voxel: "float", "half", "double", "Fp8", "vec3s", "points", ...
+  std::string type;        ///< Of a voxel: "float", "half", "int32", "bool", "Fp8", "vec3s", ...
   std::string grid_class;  ///< "fog volume", "level set", "staggered" or "unknown".
-  Matrix4d index_to_world;              ///< Centre of voxel (i,j,k) is the index point (i,j,k).
-  Vec3i active_min{0}, active_max{-1};  ///< Inclusive bounds of the active voxels [index].
-  uint64_t active_voxels = 0;           ///< Those of active tiles included.
-  uint64_t active_tiles = 0;            ///< Constant cubes of 8, 128 or 4096 voxels a side.
-  uint64_t stored_bytes = 0;            ///< Bytes of the grid in the file.
-  float minimum = 0, maximum = 0;       ///< Of the active values, 0 where there are none.
-  int channels = 1;                     ///< Densities in a voxel: 3 in a grid of vectors, R, G, B.
-  std::vector<GridRange> ranges;        ///< Of each channel, once it has been read.
-  bool loadable = false;                ///< Whether load_fields takes it.
-  std::string reason;                   ///< Why not.
+  /// Centre of voxel (i,j,k) is the index point (i,j,k). Of a grid in a frustum only its affine
+  /// part, until its fields are read.
+  Matrix4d index_to_world;
+  /// Inclusive bounds of the active voxels, and of inactive ones that are not 0 [index].
+  Vec3i active_min{0}, active_max{-1};
+  uint64_t active_voxels = 0;      ///< Those of active tiles included.
+  uint64_t inactive_voxels = 0;    ///< Inactive ones that are not 0: they count as they are.
+  uint64_t active_tiles = 0;       ///< Constant cubes of 8, 128 or 4096 voxels a side.
+  uint64_t stored_bytes = 0;       ///< Bytes of the grid in the file.
+  float minimum = 0, maximum = 0;  ///< Of all channels, as GridRange.
+  int channels = 1;                ///< Densities in a voxel: 3 in a grid of vectors, R, G, B.
+  std::vector<GridRange> ranges;   ///< Of each channel, once it has been read.
+  bool loadable = false;           ///< Whether load_fields takes it.
+  std::string reason;              ///< Why not.
+
+  /// Whether nothing is in it, as in the first frames of many a sequence.
+  bool empty() const { return active_voxels + inactive_voxels == 0; }
 };
 
 /// All grids of a file, in its order. Reads every grid of reals or vectors through, for bounds and
 /// range; a grid that can't be read is listed with the reason.
 /// @throws Error if the file can't be read or is no volume
 std::vector<GridInfo> list_grids(const std::filesystem::path& path);
+
+/// The same of the headers alone, without bounds, ranges and counts: no voxel is read.
+/// @throws Error as list_grids
+std::vector<GridInfo> list_grid_heads(const std::filesystem::path& path);
 
 /// What to do about a negative density: refuse the grid, or put 0 in its place and say so.
 enum class NegativePolicy { kError, kClamp };
@@ -70,6 +84,7 @@ const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<G
 struct LoadOptions {
   GridSelection selection;
   NegativePolicy negative = NegativePolicy::kError;
+  InvalidPolicy invalid = InvalidPolicy::kZero;
   bool scalar_only = false;  ///< Refuse grids of vectors.
 };
 
@@ -78,17 +93,26 @@ struct LoadedField {
   Field field;
   std::vector<std::string> warnings;  ///< One sentence each, with file and grid.
   uint64_t clamped_voxels = 0;        ///< Negative ones set to 0.
+  uint64_t invalid_voxels = 0;        ///< Those set to 0 by InvalidPolicy::kZero.
   uint64_t active_voxels = 0;         ///< Those of active tiles included.
+  uint64_t inactive_voxels = 0;       ///< Inactive ones that are not 0.
   uint64_t active_tiles = 0;
-  float minimum = 0, maximum = 0;  ///< Of the active values, after clamping.
+  float minimum = 0, maximum = 0;  ///< Of all that are active or not 0, after clamping.
+
+  /// Whether nothing is in it: a field of zeros, a voxel large.
+  bool empty() const { return active_voxels + inactive_voxels == 0; }
 };
 
 /// Reads one grid into a brick map, leaf by leaf and in parallel: at no time is the grid in memory
-/// twice. Inactive voxels are 0. Doubles are rounded to float.
+/// twice. Doubles and whole numbers are rounded to float; of bool grids true is 1, of masks an
+/// active voxel. Inactive voxels of leaves and inactive tiles keep their values, as the samplers of
+/// OpenVDB see them, but for the background where that is not 0: it would fill all space, and
+/// counts as 0, with a warning. A grid without any voxels is a field of zeros, with a warning. A
+/// grid in the frustum of a camera is resampled to voxels of one size; a warning tells how well.
 /// @throws Error, naming file, grid and voxel, if there is no such file or grid; the file is
-///   truncated or damaged; the grid is a level set, of points, not scalar or empty; its transform
-///   is not affine and invertible; or a value is NaN, infinite, out of the range of float, or
-///   negative (see NegativePolicy)
+///   truncated or damaged; the grid is a level set, of points or not scalar; its transform is not
+///   invertible; or a value is NaN, infinite or out of the range of float (see
+///   InvalidPolicy), or negative (see NegativePolicy)
 LoadedField load_field(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The same for a grid of any number of channels: one field, or three of one transform and layout
@@ -96,5 +120,16 @@ LoadedField load_field(const std::filesystem::path& path, const LoadOptions& opt
 /// @throws Error as load_field; about a value it names the channel too
 std::vector<LoadedField> load_fields(const std::filesystem::path& path,
                                      const LoadOptions& options = {});
+
+/// Takes what list_grids tells of a grid and what load_fields gives, which is empty where it can't
+/// be loaded.
+using GridVisitor = std::function<void(const GridInfo& info, std::vector<LoadedField> fields)>;
+
+/// Reads the grids of a file, each once and one at a time being in memory, in the file's order.
+/// @param only one of them; nothing is all
+/// @param options the selection doesn't count
+/// @throws Error as list_grids and find_grid, and what `use` throws
+void visit_grids(const std::filesystem::path& path, const std::optional<GridSelection>& only,
+                 const LoadOptions& options, const GridVisitor& use);
 
 }  // namespace freepath

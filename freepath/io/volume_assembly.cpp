@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "freepath/base/error.h"
+#include "freepath/base/memory_budget.h"
 
 namespace freepath::io {
 namespace {
@@ -53,26 +54,36 @@ bool is_clampable(T value) {
   return value < T(0) && value >= T(std::numeric_limits<float>::lowest());
 }
 
-void record_bad(ValueScan& scan, uint64_t place, const Vec3i& voxel, double value) {
-  if (!scan.bad || place < scan.bad->place) scan.bad = ValueScan::Bad{place, voxel, value};
+void record_first(std::optional<ValueScan::Bad>& first, const ValueScan::Bad& found) {
+  if (!first || found.place < first->place) first = found;
+}
+
+/// "voxel (1, 2, 3) is NaN"
+std::string bad_voxel(const ValueScan::Bad& bad) {
+  const std::string voxel =
+      fmt::format("voxel ({}, {}, {})", bad.voxel.x, bad.voxel.y, bad.voxel.z);
+  if (std::isnan(bad.value)) return voxel + " is NaN";
+  if (std::isinf(bad.value)) return voxel + " is infinite";
+  if (std::abs(bad.value) > std::numeric_limits<float>::max()) {
+    return fmt::format("{} is {}, out of the range of float", voxel, bad.value);
+  }
+  return fmt::format("{} is negative ({})", voxel, bad.value);
 }
 
 [[noreturn]] void fail_bad(const std::string& where, const ValueScan::Bad& bad) {
-  const std::string voxel =
-      fmt::format("{}: voxel ({}, {}, {})", where, bad.voxel.x, bad.voxel.y, bad.voxel.z);
-  if (std::isnan(bad.value)) fail("{} is NaN; densities must be finite: repair the grid", voxel);
-  if (std::isinf(bad.value))
-    fail("{} is infinite; densities must be finite: repair the grid", voxel);
-  if (std::abs(bad.value) > std::numeric_limits<float>::max()) {
-    fail("{} is {}, out of the range of float: scale the grid down", voxel, bad.value);
+  if (is_clampable(bad.value)) {
+    fail(
+        "{}: {}; densities are 0 or more: repair the grid, or have negative ones taken as 0 "
+        "(--negative clamp)",
+        where, bad_voxel(bad));
   }
   fail(
-      "{} is negative ({}); densities are 0 or more: repair the grid, or have negative ones taken "
-      "as 0 (--negative clamp)",
-      voxel, bad.value);
+      "{}: {}; densities must be finite: repair the grid, or have such values taken as 0 "
+      "(--invalid zero)",
+      where, bad_voxel(bad));
 }
 
-BrickMapBuilder make_builder(const VolumeLayout& layout) {
+BrickMapBuilder make_builder(const std::string& where, const VolumeLayout& layout) {
   ValueScan bounds;
   for (const Vec3i& leaf : layout.leaves) extend(bounds, leaf, leaf + Vec3i(7));
   std::unordered_set<float> tile_values;
@@ -82,32 +93,65 @@ BrickMapBuilder make_builder(const VolumeLayout& layout) {
     tile_values.insert(static_cast<float>(tile.value));
     places += cube(tile.size / BrickMap::kBrickSize);
   }
-  return {bounds.active_min, bounds.active_max, layout.leaves.size() + tile_values.size(), places};
+  const std::size_t bricks = layout.leaves.size() + tile_values.size();
+  check_memory_present(where, fmt::format("{} bricks of 8x8x8 voxels", bricks),
+                       static_cast<double>(bricks) * kLeafVoxels * sizeof(float));
+  // One voxel of an empty grid.
+  if (bricks == 0) extend(bounds, Vec3i(0), Vec3i(0));
+  return {bounds.active_min, bounds.active_max, bricks, places};
 }
 
 }  // namespace
 
+void GridLayout::check_memory() const {
+  const std::size_t tiles = channels_[0].tiles.size();
+  constexpr std::size_t kOften = std::size_t{1} << 20;
+  if (tiles == 0 || tiles % kOften != 0) return;
+  check_memory_present("its tree", fmt::format("{} tiles", tiles),
+                       2.0 * static_cast<double>(tiles * channels_.size() * sizeof(VolumeTile)));
+}
+
 void ValueScan::merge(const ValueScan& other) {
   active_voxels += other.active_voxels;
+  inactive_voxels += other.inactive_voxels;
   negative_voxels += other.negative_voxels;
+  invalid_voxels += other.invalid_voxels;
   minimum = std::min(minimum, other.minimum);
   maximum = std::max(maximum, other.maximum);
   extend(*this, other.active_min, other.active_max);
-  if (other.bad) record_bad(*this, other.bad->place, other.bad->voxel, other.bad->value);
+  if (other.bad) record_first(bad, *other.bad);
+  if (other.invalid) record_first(invalid, *other.invalid);
+}
+
+template <class T>
+float ValueCheck::mend(T value, const Vec3i& voxel, uint64_t place, uint64_t voxels,
+                       ValueScan& scan) const {
+  const ValueScan::Bad found{place, voxel, static_cast<double>(value)};
+  if (is_clampable(value)) {
+    if (negative == NegativePolicy::kClamp) {
+      scan.negative_voxels += voxels;
+    } else {
+      record_first(scan.bad, found);
+    }
+  } else if (invalid == InvalidPolicy::kZero) {
+    scan.invalid_voxels += voxels;
+    record_first(scan.invalid, found);
+  } else {
+    record_first(scan.bad, found);
+  }
+  return 0;
 }
 
 float ValueCheck::tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) const {
-  extend(scan, tile.origin, tile.origin + Vec3i(tile.size - 1));
-  scan.active_voxels += cube(tile.size);
-  auto value = static_cast<float>(tile.value);
-  if (!is_density(tile.value)) {
-    if (negative == NegativePolicy::kClamp && is_clampable(tile.value)) {
-      scan.negative_voxels += cube(tile.size);
-      value = 0;
-    } else {
-      record_bad(scan, place, tile.origin, tile.value);
-    }
+  float value = 0;
+  if (is_density(tile.value)) {
+    value = static_cast<float>(tile.value);
+  } else if (tile.active || !is_background(tile.value, background)) {
+    value = mend(tile.value, tile.origin, place, cube(tile.size), scan);
   }
+  if (!tile.active && (value == 0 || is_background(tile.value, background))) return 0;
+  (tile.active ? scan.active_voxels : scan.inactive_voxels) += cube(tile.size);
+  extend(scan, tile.origin, tile.origin + Vec3i(tile.size - 1));
   scan.minimum = std::min(scan.minimum, value);
   scan.maximum = std::max(scan.maximum, value);
   return value;
@@ -116,34 +160,35 @@ float ValueCheck::tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) 
 template <class T>
 void ValueCheck::leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t place,
                       float* brick, ValueScan& scan) const {
-  extend_by_mask(scan, origin, mask);
   float minimum = scan.minimum, maximum = scan.maximum;
+  uint64_t kept[8];
   for (int slice = 0; slice < 8; ++slice) {
-    const uint64_t bits = mask[slice];
-    scan.active_voxels += static_cast<uint64_t>(std::popcount(bits));
+    const uint64_t active = mask[slice];
+    uint64_t bits = active;
     for (int i = 0; i < 64; ++i) {
       const int offset = slice * 64 + i;
-      if (((bits >> i) & 1) == 0) {
-        brick[offset] = 0;
+      const T value = values[offset];
+      const bool is_active = ((active >> i) & 1) != 0;
+      brick[offset] = 0;
+      if (!is_active && (value == T(0) || is_background(static_cast<double>(value), background))) {
         continue;
       }
-      auto value = static_cast<float>(values[offset]);
-      if (!is_density(values[offset])) [[unlikely]] {
-        if (negative == NegativePolicy::kClamp && is_clampable(values[offset])) {
-          ++scan.negative_voxels;
-          value = 0;
-        } else {
-          record_bad(scan, place, origin + Vec3i(slice, i >> 3, i & 7),
-                     static_cast<double>(values[offset]));
-        }
-      }
-      brick[offset] = value;
-      minimum = std::min(minimum, value);
-      maximum = std::max(maximum, value);
+      const float density = is_density(value)
+                                ? static_cast<float>(value)
+                                : mend(value, origin + Vec3i(slice, i >> 3, i & 7), place, 1, scan);
+      if (!is_active && density == 0) continue;
+      bits |= uint64_t{1} << i;
+      brick[offset] = density;
+      minimum = std::min(minimum, density);
+      maximum = std::max(maximum, density);
     }
+    kept[slice] = bits;
+    scan.active_voxels += static_cast<uint64_t>(std::popcount(active));
+    scan.inactive_voxels += static_cast<uint64_t>(std::popcount(bits & ~active));
   }
   scan.minimum = minimum;
   scan.maximum = maximum;
+  extend_by_mask(scan, origin, kept);
 }
 
 template void ValueCheck::leaf<float>(const float*, const uint64_t*, const Vec3i&, uint64_t, float*,
@@ -153,13 +198,12 @@ template void ValueCheck::leaf<double>(const double*, const uint64_t*, const Vec
 
 FieldAssembly::FieldAssembly(std::string where, const LoadOptions& options, VolumeLayout layout,
                              bool keep_values)
-    : where_(std::move(where)), check_{options.negative}, layout_(std::move(layout)) {
-  if (layout_.leaves.empty() && layout_.tiles.empty()) {
-    fail("{}: it has no active voxels; choose another grid", where_);
-  }
+    : where_(std::move(where)),
+      check_{options.negative, options.invalid, layout.background},
+      layout_(std::move(layout)) {
   if (keep_values) {
     try {
-      builder_.emplace(make_builder(layout_));
+      builder_.emplace(make_builder(where_, layout_));
     } catch (const Error& error) {
       fail("{}: {}", where_, error.what());
     }
@@ -168,7 +212,8 @@ FieldAssembly::FieldAssembly(std::string where, const LoadOptions& options, Volu
     const VolumeTile& tile = layout_.tiles[i];
     const float value = check_.tile(tile, layout_.leaves.size() + i, tile_scan_);
     const Vec3i first = brick_of(tile.origin);
-    if (builder_) builder_->add_constant_bricks(first, first + Vec3i(tile.size / 8), value);
+    if (builder_ && value != 0)
+      builder_->add_constant_bricks(first, first + Vec3i(tile.size / 8), value);
   }
   // Last, since the span holds until the next addition.
   if (builder_)
@@ -179,9 +224,12 @@ FieldAssembly::FieldAssembly(std::string where, const LoadOptions& options, Volu
     }());
 }
 
+uint64_t FieldAssembly::active_tiles() const {
+  return static_cast<uint64_t>(std::ranges::count_if(layout_.tiles, &VolumeTile::active));
+}
+
 ValueScan FieldAssembly::with_tiles(ValueScan scan) const {
   scan.merge(tile_scan_);
-  if (scan.active_voxels == 0) fail("{}: it has no active voxels; choose another grid", where_);
   if (scan.bad) fail_bad(where_, *scan.bad);
   return scan;
 }
@@ -191,19 +239,33 @@ LoadedField FieldAssembly::finish(std::string name, const Matrix4d& index_to_wor
   const ValueScan scan = with_tiles(leaves);
   LoadedField loaded;
   loaded.active_voxels = scan.active_voxels;
-  loaded.active_tiles = layout_.tiles.size();
+  loaded.inactive_voxels = scan.inactive_voxels;
+  loaded.active_tiles = active_tiles();
   loaded.clamped_voxels = scan.negative_voxels;
-  loaded.minimum = scan.minimum;
-  loaded.maximum = scan.maximum;
+  loaded.invalid_voxels = scan.invalid_voxels;
+  if (scan.empty()) {
+    loaded.warnings.push_back(fmt::format("{}: it has no active voxels: it is empty", where_));
+    const Vec3i voxel = layout_.leaves.empty() ? Vec3i(0) : layout_.leaves.front();
+    builder_->set_active_bounds(voxel, voxel);
+  } else {
+    loaded.minimum = scan.minimum;
+    loaded.maximum = scan.maximum;
+    builder_->set_active_bounds(scan.active_min, scan.active_max);
+  }
   if (layout_.background != 0) {
     loaded.warnings.push_back(
-        fmt::format("{}: inactive voxels hold {}, but count as 0", where_, layout_.background));
+        fmt::format("{}: its background is {}, but counts as 0", where_, layout_.background));
+  }
+  if (scan.invalid_voxels > 0) {
+    loaded.warnings.push_back(fmt::format(
+        "{}: {} values that are NaN, infinite or out of the range of float were taken as 0; the "
+        "first: {}",
+        where_, scan.invalid_voxels, bad_voxel(*scan.invalid)));
   }
   if (scan.negative_voxels > 0) {
     loaded.warnings.push_back(
         fmt::format("{}: {} negative densities were taken as 0", where_, scan.negative_voxels));
   }
-  builder_->set_active_bounds(scan.active_min, scan.active_max);
   loaded.field = {std::move(name), std::move(*builder_).finish(), index_to_world};
   return loaded;
 }
@@ -212,8 +274,9 @@ void FieldAssembly::describe(const ValueScan& leaves, GridInfo& info) const {
   ValueScan scan = leaves;
   scan.merge(tile_scan_);
   info.active_voxels = scan.active_voxels;
-  info.active_tiles = layout_.tiles.size();
-  if (scan.active_voxels > 0) {
+  info.inactive_voxels = scan.inactive_voxels;
+  info.active_tiles = active_tiles();
+  if (!scan.empty()) {
     info.active_min = scan.active_min;
     info.active_max = scan.active_max;
     info.minimum = info.ranges.empty() ? scan.minimum : std::min(info.minimum, scan.minimum);

@@ -3,6 +3,7 @@
 /// tiles of a sparse tree into a brick map.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,19 +11,22 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "freepath/io/volume.h"
+#include "freepath/io/volume_file.h"
 
 namespace freepath::io {
 
 inline constexpr int kLeafVoxels = BrickMap::kBrickVoxels;
 
-/// A constant cube of an active value.
+/// A constant cube.
 struct VolumeTile {
   Vec3i origin;  ///< First voxel, a multiple of 8 [index].
   int size = 0;  ///< Voxels a side, a multiple of 8.
   double value = 0;
+  bool active = true;
 };
 
 /// What stands in a tree above its voxels.
@@ -32,20 +36,29 @@ struct VolumeLayout {
   double background = 0;
 };
 
-/// The densities in a value of a voxel: a real is one, a vector three.
+/// What values are read as: whole numbers and truth values become doubles.
+template <class T>
+using RealOf = std::conditional_t<std::is_floating_point_v<T>, T, double>;
+
+/// The densities in a value of a voxel: a number is one, a vector three.
 template <class T>
 struct ValueChannels {
   static constexpr int kCount = 1;
-  using Real = T;
-  static T get(const T& value, int /*channel*/) { return value; }
+  using Real = RealOf<T>;
+  static Real get(const T& value, int /*channel*/) { return static_cast<Real>(value); }
 };
 template <class T>
 requires requires(const T& vector) { vector[2]; }
 struct ValueChannels<T> {
   static constexpr int kCount = 3;
-  using Real = typename T::ValueType;
-  static Real get(const T& value, int channel) { return value[channel]; }
+  using Real = RealOf<typename T::ValueType>;
+  static Real get(const T& value, int channel) { return static_cast<Real>(value[channel]); }
 };
+
+/// Whether a value is the background, which may be NaN.
+inline bool is_background(double value, double background) {
+  return value == background || (std::isnan(value) && std::isnan(background));
+}
 
 inline constexpr int kMaxGridChannels = 3;
 
@@ -57,10 +70,19 @@ class GridLayout {
   void add_leaf(const Vec3i& origin) {
     for (VolumeLayout& layout : channels_) layout.leaves.push_back(origin);
   }
+  /// Adds a tile, unless it is inactive and 0 or the background in all channels. The background
+  /// must have been set.
   template <class T>
-  void add_tile(const Vec3i& origin, int size, const T& value) {
+  void add_tile(const Vec3i& origin, int size, const T& value, bool active) {
+    bool counts = active;
     for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
-      channels_[channel].tiles.push_back({origin, size, real(value, channel)});
+      const double density = real(value, channel);
+      counts |= density != 0 && !is_background(density, channels_[channel].background);
+    }
+    if (!counts) return;
+    check_memory();
+    for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+      channels_[channel].tiles.push_back({origin, size, real(value, channel), active});
     }
   }
   template <class T>
@@ -72,6 +94,8 @@ class GridLayout {
   std::vector<VolumeLayout> take() && { return std::move(channels_); }
 
  private:
+  /// Nodes that pack well hold many tiles in few bytes.
+  void check_memory() const;
   template <class T>
   static double real(const T& value, std::size_t channel) {
     return static_cast<double>(ValueChannels<T>::get(value, static_cast<int>(channel)));
@@ -80,7 +104,7 @@ class GridLayout {
   std::vector<VolumeLayout> channels_;
 };
 
-/// What was found among active values. Merging doesn't depend on the order.
+/// What was found among values that are active or not 0. Merging doesn't depend on the order.
 struct ValueScan {
   struct Bad {
     uint64_t place = 0;  ///< Place in the grid; the first bad value is the one reported.
@@ -89,29 +113,42 @@ struct ValueScan {
   };
 
   uint64_t active_voxels = 0;
+  uint64_t inactive_voxels = 0;  ///< Inactive ones that are not 0.
   uint64_t negative_voxels = 0;  ///< Counted under NegativePolicy::kClamp only.
+  uint64_t invalid_voxels = 0;   ///< Counted under InvalidPolicy::kZero only.
   float minimum = std::numeric_limits<float>::infinity();
   float maximum = -std::numeric_limits<float>::infinity();
   Vec3i active_min{std::numeric_limits<int>::max()};
   Vec3i active_max{std::numeric_limits<int>::min()};
-  std::optional<Bad> bad;
+  std::optional<Bad> bad;      ///< The first that is to be refused.
+  std::optional<Bad> invalid;  ///< The first of the invalid voxels.
 
+  bool empty() const { return active_voxels + inactive_voxels == 0; }
   void merge(const ValueScan& other);
 };
 
 /// The float of a value: values that density can't be are recorded in the scan, others counted.
 struct ValueCheck {
   NegativePolicy negative = NegativePolicy::kError;
+  InvalidPolicy invalid = InvalidPolicy::kZero;
+  double background = 0;
 
   /// Checks a tile's value, `place` being its rank in the grid.
   float tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) const;
 
-  /// Checks the active values of a leaf and writes 512 floats, 0 where inactive.
+  /// Checks the values of a leaf and writes 512 floats: inactive ones are kept, unless they are the
+  /// background.
   /// @param values 512 values, offset 64x + 8y + z
   /// @param mask 512 bits, active ones set
   template <class T>
   void leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t place,
             float* bricks, ValueScan& scan) const;
+
+ private:
+  /// The float of a value that is no density.
+  /// @param voxels how many have it
+  template <class T>
+  float mend(T value, const Vec3i& voxel, uint64_t place, uint64_t voxels, ValueScan& scan) const;
 };
 
 /// What was found in each channel of a grid.
@@ -142,7 +179,7 @@ class FieldAssembly {
   }
 
   /// The field, once all leaves were taken; `scan` is the merge of their scans.
-  /// @throws Error for a bad value or a grid without active voxels
+  /// @throws Error for a bad value
   LoadedField finish(std::string name, const Matrix4d& index_to_world, const ValueScan& scan) &&;
 
   /// The same numbers for a list of grids; its range grows by this channel's.
@@ -150,6 +187,7 @@ class FieldAssembly {
 
  private:
   ValueScan with_tiles(ValueScan scan) const;
+  uint64_t active_tiles() const;
 
   std::string where_;
   ValueCheck check_;
@@ -174,7 +212,7 @@ class GridAssembly {
   template <class T>
   void take_leaf(std::size_t leaf, const T* values, const uint64_t* mask, GridScan& scan) const {
     using Channels = ValueChannels<T>;
-    if constexpr (Channels::kCount == 1) {
+    if constexpr (std::is_floating_point_v<T>) {
       channels_[0].take_leaf(leaf, values, mask, scan.channels[0]);
     } else {
       std::array<typename Channels::Real, kLeafVoxels> reals;
@@ -186,7 +224,7 @@ class GridAssembly {
   }
 
   /// A field for each channel, once all leaves were taken.
-  /// @throws Error for a bad value or a grid without active voxels
+  /// @throws Error for a bad value
   std::vector<LoadedField> finish(const GridInfo& info, const GridScan& scan) &&;
 
   /// The same numbers for a list of grids.
@@ -195,6 +233,9 @@ class GridAssembly {
  private:
   std::vector<FieldAssembly> channels_;
 };
+
+/// @throws Error if two nodes begin at one place, which would hold two values there
+void check_distinct(const VolumeFile& file, std::vector<Vec3i> origins);
 
 /// Gives grids of the same name the suffixes "[1]", "[2]", ... behind the first.
 void make_names_unique(std::vector<GridInfo>& grids);

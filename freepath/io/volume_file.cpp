@@ -7,7 +7,7 @@
 namespace freepath::io {
 namespace {
 
-constexpr std::size_t kWindow = std::size_t{1} << 20;
+constexpr std::size_t kFirstWindow = std::size_t{1} << 12, kWindow = std::size_t{1} << 20;
 constexpr std::size_t kLongestString = std::size_t{1} << 16;
 
 }  // namespace
@@ -43,7 +43,9 @@ std::span<const std::byte> FileCursor::peek(uint64_t ahead, std::size_t bytes) {
                       bytes <= window_.size() - (begin - window_offset_);
   if (!inside) {
     file_->require(begin, bytes);
-    window_.resize(std::max<uint64_t>(bytes, std::min<uint64_t>(kWindow, file_->size() - begin)));
+    const bool onward = begin >= window_offset_ && begin <= window_offset_ + window_.size();
+    wish_ = onward && wish_ > 0 ? std::min(kWindow, 4 * wish_) : kFirstWindow;
+    window_.resize(std::max<uint64_t>(bytes, std::min<uint64_t>(wish_, file_->size() - begin)));
     file_->read(begin, window_);
     window_offset_ = begin;
   }

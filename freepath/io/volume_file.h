@@ -37,7 +37,8 @@ class VolumeFile {
   InputFile file_;
 };
 
-/// Reads a file forward through a window of a megabyte, with every length checked.
+/// Reads a file forward through a window, with every length checked. The window grows to a megabyte
+/// as long as reading goes on where it ended.
 class FileCursor {
  public:
   FileCursor(const VolumeFile& file, uint64_t offset) : file_(&file), offset_(offset) {}
@@ -67,6 +68,7 @@ class FileCursor {
   const VolumeFile* file_;
   uint64_t offset_;
   uint64_t window_offset_ = 0;
+  std::size_t wish_ = 0;  // for the window
   std::vector<std::byte> window_;
 };
 

@@ -20,6 +20,12 @@ std::string listed(const std::vector<GridInfo>& grids) {
   return list;
 }
 
+/// Whole numbers and truth values are more often labels than densities.
+bool holds_reals(const GridInfo& grid) {
+  constexpr std::string_view kOthers[] = {"int16", "int32", "int64", "uint32", "bool", "mask"};
+  return std::ranges::find(kOthers, grid.type) == std::end(kOthers);
+}
+
 }  // namespace
 
 GridSelection parse_grid_selection(std::string_view text) {
@@ -53,8 +59,15 @@ const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<G
   if (selection.name) {
     fail("{}: there is no grid named \"{}\"; it holds {}", file.string(), wanted, listed(grids));
   }
-  const auto is_default = [](const GridInfo& grid) { return grid.loadable && grid.channels == 1; };
-  const auto loadable = std::ranges::count_if(grids, is_default);
+  bool reals = true;
+  const auto is_default = [&reals](const GridInfo& grid) {
+    return grid.loadable && grid.channels == 1 && holds_reals(grid) == reals;
+  };
+  auto loadable = std::ranges::count_if(grids, is_default);
+  if (loadable == 0) {
+    reals = false;
+    loadable = std::ranges::count_if(grids, is_default);
+  }
   if (loadable == 1) return *std::ranges::find_if(grids, is_default);
   // Its own reason says more than a choice of one.
   if (grids.size() == 1 && grids[0].channels == 1) return grids[0];
@@ -63,6 +76,17 @@ const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<G
 }
 
 namespace io {
+
+void check_distinct(const VolumeFile& file, std::vector<Vec3i> origins) {
+  std::sort(origins.begin(), origins.end(), [](const Vec3i& a, const Vec3i& b) {
+    if (a.x != b.x) return a.x < b.x;
+    return a.y != b.y ? a.y < b.y : a.z < b.z;
+  });
+  const auto twice = std::adjacent_find(origins.begin(), origins.end());
+  if (twice == origins.end()) return;
+  file.fail_damaged(
+      fmt::format("two nodes begin at voxel ({}, {}, {})", twice->x, twice->y, twice->z));
+}
 
 void make_names_unique(std::vector<GridInfo>& grids) {
   std::map<std::string, int> seen;
@@ -120,9 +144,13 @@ std::string reason_against_type(const std::string& type) {
   if (type == "points") {
     return "it holds points, not densities; rasterise them first (VDB from Particles in Houdini)";
   }
+  if (type == "index") {
+    return "its voxels are indices of values that stand elsewhere; write the grid with its values "
+           "(nanovdb::createNanoGrid<..., float>)";
+  }
   return fmt::format(
-      "its voxels are of type {}; only float, half, double, the quantised floats of NanoVDB and "
-      "vectors of three reals can be densities",
+      "its voxels are of type {}; only numbers, truth values, masks and vectors of three numbers "
+      "can be densities",
       type);
 }
 

@@ -32,6 +32,8 @@ class TreeWalk {
   using Root = typename nanovdb::NanoRoot<Build>::DataType;
   using Upper = typename nanovdb::NanoUpper<Build>::DataType;
   using Lower = typename nanovdb::NanoLower<Build>::DataType;
+  using Value = std::remove_cv_t<decltype(Root::mBackground)>;
+  static constexpr bool kIsMask = std::is_same_v<Build, nanovdb::ValueMask>;
 
   TreeWalk(const VolumeFile& file, NvdbBytes& bytes) : file_(&file), bytes_(&bytes) {}
 
@@ -40,6 +42,8 @@ class TreeWalk {
 
   void read(uint64_t root_offset) {
     std::vector<NodePlace> upper = read_root(root_offset);
+    // Two nodes of the root at one place would hold two values there.
+    check_distinct(*file_, std::move(root_origins_));
     sort_level(upper, sizeof(Upper));
     std::vector<NodePlace> lower;
     for (const NodePlace& place : upper) read_node<Upper, 32, 128>(place, lower);
@@ -54,7 +58,7 @@ class TreeWalk {
     check_alignment(offset);
     bytes_->read(offset, buffer_.resize(sizeof(Root)));
     const uint32_t count = buffer_.node<Root>(0).mTableSize;
-    layout.set_background(buffer_.node<Root>(0).mBackground);
+    layout.set_background(kIsMask ? Value{} : buffer_.node<Root>(0).mBackground);
     end_ = offset + sizeof(Root);
     std::vector<NodePlace> children;
     using Tile = typename Root::Tile;
@@ -64,10 +68,11 @@ class TreeWalk {
       const Tile& tile = buffer_.node<Tile>(0);
       const nanovdb::Coord corner = tile.origin();
       const Vec3i origin(corner[0], corner[1], corner[2]);
+      root_origins_.push_back(origin);
       if (tile.isChild()) {
         children.push_back({offset + static_cast<uint64_t>(tile.child), origin});
-      } else if (tile.state != 0) {
-        layout.add_tile(origin, 4096, tile.value);
+      } else {
+        add_tile(origin, 4096, tile.value, tile.state != 0);
       }
     }
     return children;
@@ -77,18 +82,41 @@ class TreeWalk {
   void read_node(const NodePlace& place, std::vector<NodePlace>& children) {
     bytes_->read(place.offset, buffer_.resize(sizeof(Node)));
     const Node& node = buffer_.node<Node>(0);
-    for (int entry = 0; entry < kSide * kSide * kSide; ++entry) {
-      const bool child = node.mChildMask.isOn(entry);
-      if (!child && !node.mValueMask.isOn(entry)) continue;
+    constexpr int kEntries = kSide * kSide * kSide;
+    if (is_uniform<kEntries>(node)) {
+      add_tile(place.origin, kEntrySize * kSide, node.mTable[0].value, node.mValueMask.isOn(0));
+      return;
+    }
+    for (int entry = 0; entry < kEntries; ++entry) {
       const Vec3i origin =
           place.origin +
           Vec3i(entry / (kSide * kSide), entry / kSide % kSide, entry % kSide) * kEntrySize;
-      if (child) {
+      if (node.mChildMask.isOn(entry)) {
         children.push_back(
             {place.offset + static_cast<uint64_t>(node.mTable[entry].child), origin});
       } else {
-        layout.add_tile(origin, kEntrySize, node.mTable[entry].value);
+        add_tile(origin, kEntrySize, node.mTable[entry].value, node.mValueMask.isOn(entry));
       }
+    }
+  }
+
+  /// Whether a node is one tile.
+  template <int kEntries, class Node>
+  static bool is_uniform(const Node& node) {
+    if (!node.mChildMask.isOff() || !(node.mValueMask.isOn() || node.mValueMask.isOff())) {
+      return false;
+    }
+    for (int entry = 1; entry < kEntries; ++entry) {
+      if (!(node.mTable[entry].value == node.mTable[0].value)) return false;
+    }
+    return true;
+  }
+
+  void add_tile(const Vec3i& origin, int size, const Value& value, bool active) {
+    if constexpr (kIsMask) {
+      layout.add_tile(origin, size, active, active);
+    } else {
+      layout.add_tile(origin, size, value, active);
     }
   }
 
@@ -116,6 +144,7 @@ class TreeWalk {
   NvdbBytes* bytes_;
   NodeBuffer buffer_;
   uint64_t end_ = 0;  // of what was read
+  std::vector<Vec3i> root_origins_;
 };
 
 /// Leaves in a row, as they stand in the grid.
@@ -206,27 +235,22 @@ GridScan read_leaves(const VolumeFile& file, NvdbBytes& bytes, const std::vector
       [&](const NvdbChunk& chunk) { return take_chunk<Build>(file, chunk, leaves, assembly); });
 }
 
-struct ReadNvdbGrid {
-  std::unique_ptr<GridAssembly> assembly;
-  GridScan scan;
-};
-
 template <class Build>
-ReadNvdbGrid read_grid_as(const VolumeFile& file, const NvdbGrid& grid, const GridInfo& info,
-                          const LoadOptions& options, bool keep_values) {
+AssembledGrid read_grid_as(const VolumeFile& file, const NvdbGrid& grid, const GridInfo& info,
+                           const LoadOptions& options, bool keep_values) {
   NvdbBytes bytes(file, grid.extent);
   const NvdbHead head = read_nvdb_head(file, grid, bytes);
   TreeWalk<Build> walk(file, bytes);
   walk.read(head.node_offsets[3]);
-  ReadNvdbGrid result;
+  AssembledGrid result;
   result.assembly = std::make_unique<GridAssembly>(file.name(), info.name, options,
                                                    std::move(walk.layout), keep_values);
   result.scan = read_leaves<Build>(file, bytes, walk.leaves, *result.assembly);
   return result;
 }
 
-using GridReader = ReadNvdbGrid (*)(const VolumeFile&, const NvdbGrid&, const GridInfo&,
-                                    const LoadOptions&, bool);
+using GridReader = AssembledGrid (*)(const VolumeFile&, const NvdbGrid&, const GridInfo&,
+                                     const LoadOptions&, bool);
 
 /// The reader for a type of grid, null where there is none.
 GridReader reader_of(nanovdb::GridType type) {
@@ -245,6 +269,20 @@ GridReader reader_of(nanovdb::GridType type) {
       return read_grid_as<nanovdb::FpN>;
     case nanovdb::GridType::Vec3f:
       return read_grid_as<nanovdb::Vec3f>;
+    case nanovdb::GridType::Vec3d:
+      return read_grid_as<nanovdb::Vec3d>;
+    case nanovdb::GridType::Int16:
+      return read_grid_as<int16_t>;
+    case nanovdb::GridType::Int32:
+      return read_grid_as<int32_t>;
+    case nanovdb::GridType::Int64:
+      return read_grid_as<int64_t>;
+    case nanovdb::GridType::UInt32:
+      return read_grid_as<uint32_t>;
+    case nanovdb::GridType::Boolean:
+      return read_grid_as<bool>;
+    case nanovdb::GridType::Mask:
+      return read_grid_as<nanovdb::ValueMask>;
     default:
       return nullptr;
   }
@@ -261,7 +299,8 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file,
     info.type = nvdb_value_type(grid);
     info.grid_class = nvdb_class_name(grid.grid_class);
     info.stored_bytes = grid.extent.stored_size;
-    info.channels = grid.type == nanovdb::GridType::Vec3f ? 3 : 1;
+    info.channels =
+        grid.type == nanovdb::GridType::Vec3f || grid.type == nanovdb::GridType::Vec3d ? 3 : 1;
     NvdbBytes bytes(file, grid.extent);
     info.index_to_world = read_nvdb_head(file, grid, bytes).index_to_world;
     info.reason = reader_of(grid.type) != nullptr ? reason_against_class(info.grid_class)
@@ -274,32 +313,35 @@ std::vector<GridInfo> describe_directory(const VolumeFile& file,
   return infos;
 }
 
+class NvdbReader : public VolumeReader {
+ public:
+  explicit NvdbReader(const VolumeFile& file) : file_(file), grids_(read_nvdb_directory(file)) {}
+
+  std::vector<GridInfo> heads() const override { return describe_directory(file_, grids_); }
+
+  bool is_readable(const GridInfo& head) const override {
+    return reader_of(grid_of(head).type) != nullptr;
+  }
+
+  AssembledGrid read(const GridInfo& head, const LoadOptions& options,
+                     bool keep_values) const override {
+    const NvdbGrid& grid = grid_of(head);
+    return reader_of(grid.type)(file_, grid, head, options, keep_values);
+  }
+
+ private:
+  const NvdbGrid& grid_of(const GridInfo& head) const {
+    return grids_[static_cast<std::size_t>(head.index)];
+  }
+
+  const VolumeFile& file_;
+  std::vector<NvdbGrid> grids_;
+};
+
 }  // namespace
 
-std::vector<GridInfo> list_nvdb_grids(const VolumeFile& file) {
-  const std::vector<NvdbGrid> grids = read_nvdb_directory(file);
-  std::vector<GridInfo> infos = describe_directory(file, grids);
-  for (std::size_t i = 0; i < grids.size(); ++i) {
-    const GridReader read = reader_of(grids[i].type);
-    if (read == nullptr) continue;
-    try {
-      const ReadNvdbGrid result = read(file, grids[i], infos[i], {}, false);
-      result.assembly->describe(result.scan, infos[i]);
-    } catch (const std::exception& error) {
-      set_failure(file.name(), error.what(), infos[i]);
-    }
-  }
-  return infos;
-}
-
-std::vector<LoadedField> load_nvdb_fields(const VolumeFile& file, const LoadOptions& options) {
-  const std::vector<NvdbGrid> grids = read_nvdb_directory(file);
-  const std::vector<GridInfo> infos = describe_directory(file, grids);
-  const GridInfo& info = find_grid(file.name(), infos, options.selection);
-  check_selected(file.name(), info, options);
-  const NvdbGrid& grid = grids[static_cast<std::size_t>(info.index)];
-  ReadNvdbGrid result = reader_of(grid.type)(file, grid, info, options, true);
-  return std::move(*result.assembly).finish(info, result.scan);
+std::unique_ptr<VolumeReader> open_nvdb(const VolumeFile& file) {
+  return std::make_unique<NvdbReader>(file);
 }
 
 }  // namespace freepath::io

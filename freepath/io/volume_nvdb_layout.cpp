@@ -25,12 +25,6 @@ nanovdb::io::Header take_segment_header(FileCursor& cursor) {
   if (header.magic == nanovdb::io::reverseEndianness(NANOVDB_MAGIC_NUMBER)) {
     fail("{}: it was written by a big-endian machine; convert it again", file.name());
   }
-  if (header.magic == kBareGridMagic) {
-    fail(
-        "{}: it is the memory of a grid without a file header; write it with "
-        "nanovdb::io::writeGrid",
-        file.name());
-  }
   if (header.magic != NANOVDB_MAGIC_NUMBER && header.magic != kFileMagic) {
     file.fail_damaged(
         fmt::format("no segment begins at byte {}", cursor.offset() - sizeof(header)));
@@ -58,9 +52,51 @@ NvdbGrid take_metadata(FileCursor& cursor, NvdbCodec codec) {
   return grid;
 }
 
+/// Whether a file is the memory of grids. In early versions it begins with the same word as a file
+/// of segments, whose header goes on with a version, where a grid has a checksum.
+bool is_grid_memory(const VolumeFile& file) {
+  if (file.size() < sizeof(nanovdb::GridData)) return false;
+  FileCursor cursor(file, 0);
+  const auto header = cursor.take<nanovdb::io::Header>();
+  if (header.magic == kBareGridMagic) return true;
+  if (header.magic != NANOVDB_MAGIC_NUMBER) return false;
+  if (header.version.getMajor() == NANOVDB_MAJOR_VERSION_NUMBER) return false;
+  NodeBuffer buffer;
+  file.read(0, buffer.resize(sizeof(nanovdb::GridData)));
+  const auto& data = buffer.node<nanovdb::GridData>(0);
+  return data.mVersion.getMajor() == NANOVDB_MAJOR_VERSION_NUMBER &&
+         data.mGridSize >= sizeof(data) && data.mGridSize <= file.size();
+}
+
+/// The grids of a file that is the memory of one or several.
+std::vector<NvdbGrid> read_grid_memory(const VolumeFile& file) {
+  std::vector<NvdbGrid> grids;
+  NodeBuffer buffer;
+  uint32_t count = 1;
+  for (uint64_t offset = 0; grids.size() < count;) {
+    file.read(offset, buffer.resize(sizeof(nanovdb::GridData)));
+    const auto& data = buffer.node<nanovdb::GridData>(0);
+    check_version(file, data.mVersion);
+    if (data.mGridSize < sizeof(data)) {
+      file.fail_damaged(fmt::format("a grid of {} bytes at byte {}", data.mGridSize, offset));
+    }
+    file.require(offset, data.mGridSize);
+    count = data.mGridCount;
+    NvdbGrid grid;
+    grid.name.assign(data.mGridName, strnlen(data.mGridName, sizeof(data.mGridName)));
+    grid.type = data.mGridType;
+    grid.grid_class = data.mGridClass;
+    grid.extent = {NvdbCodec::kNone, offset, data.mGridSize, data.mGridSize};
+    grids.push_back(std::move(grid));
+    offset += data.mGridSize;
+  }
+  return grids;
+}
+
 }  // namespace
 
 std::vector<NvdbGrid> read_nvdb_directory(const VolumeFile& file) {
+  if (is_grid_memory(file)) return read_grid_memory(file);
   std::vector<NvdbGrid> grids;
   FileCursor cursor(file, 0);
   while (cursor.offset() < file.size()) {
@@ -86,8 +122,10 @@ std::string nvdb_value_type(const NvdbGrid& grid) {
   const GridClass grid_class = grid.grid_class;
   if (grid_class == GridClass::PointIndex || grid_class == GridClass::PointData) return "points";
   static constexpr std::array kNames{
-      "unknown", "float", "double", "int16", "int32", "int64", "vec3f", "vec3d", "mask",  "half",
-      "uint32",  "bool",  "rgba8",  "Fp4",   "Fp8",   "Fp16",  "FpN",   "vec4f", "vec4d", "index"};
+      "unknown", "float", "double", "int16", "int32", "int64", "vec3f", "vec3d", "mask", "half",
+      "uint32", "bool", "rgba8", "Fp4", "Fp8", "Fp16", "FpN", "vec4f", "vec4d", "index",
+      // Of later 32.x: values, masks of values and points by their index.
+      "index", "index", "index", "points"};
   const auto type = static_cast<std::size_t>(grid.type);
   return type < kNames.size() ? kNames[type] : fmt::format("number {}", type);
 }

@@ -2,7 +2,8 @@
 /// @file The layout of a NanoVDB file: its directory of grids and the headers of a grid, checked
 /// against the file before they are used.
 ///
-/// A file is a row of segments, each a header, metadata of its grids and the grids. A grid is its
+/// A file is a row of segments, each a header, metadata of its grids and the grids, or nothing but
+/// grids as they stand in memory. A grid is its
 /// header, the tree's header, the root with its tiles, then all upper nodes, all lower nodes and
 /// all leaves, which refer to each other by relative offsets. All offsets point forward.
 

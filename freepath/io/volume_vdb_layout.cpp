@@ -1,19 +1,17 @@
 #include "freepath/io/volume_vdb_layout.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "freepath/base/error.h"
+#include "freepath/io/volume_vdb_nodes.h"
 
 namespace freepath::io {
 namespace {
 
-constexpr uint32_t kOldestVersion = 222;  // the first with today's layout of nodes
-constexpr uint32_t kNewestVersion = 224;
-constexpr std::size_t kUuidBytes = 36;
+constexpr std::size_t kTextUuidBytes = 36, kUuidBytes = 16;
 constexpr char kNameSeparator = 0x1e;  // between a grid's name and its number among namesakes
-
-// OpenVDB's flags of compression.
-constexpr uint32_t kZip = 1, kActiveMask = 2, kBlosc = 4;
 
 struct Metadata {
   std::string grid_class = "unknown";
@@ -40,75 +38,116 @@ Metadata read_metadata(FileCursor& cursor) {
   return metadata;
 }
 
-VdbGrid read_descriptor(FileCursor& cursor, std::string& unique_name, std::string& parent) {
+/// What stands in front of a grid.
+struct Descriptor {
+  std::string unique_name, parent;
+  int64_t begin = 0, end = 0;
   VdbGrid grid;
-  unique_name = cursor.take_string();
-  grid.name = unique_name.substr(0, unique_name.find(kNameSeparator));
+};
+
+Descriptor read_descriptor(FileCursor& cursor, uint32_t file_version) {
+  Descriptor read;
+  VdbGrid& grid = read.grid;
+  read.unique_name = cursor.take_string();
+  grid.name = read.unique_name.substr(0, read.unique_name.find(kNameSeparator));
   grid.tree_type = cursor.take_string();
   constexpr std::string_view kHalfSuffix = "_HalfFloat";
   if (grid.tree_type.ends_with(kHalfSuffix)) {
     grid.tree_type.resize(grid.tree_type.size() - kHalfSuffix.size());
     grid.half = true;
   }
-  parent = cursor.take_string();
-  const auto begin = cursor.take<int64_t>();
-  const auto blocks = cursor.take<int64_t>();
-  const auto end = cursor.take<int64_t>();
-  const auto size = static_cast<int64_t>(cursor.file().size());
-  if (begin < static_cast<int64_t>(cursor.offset()) || blocks < begin || end < blocks ||
-      end > size) {
-    cursor.file().fail_damaged(fmt::format("grid \"{}\" should stand at bytes {} to {} of {}",
-                                           grid.name, begin, end, size));
-  }
-  grid.begin = static_cast<uint64_t>(begin);
-  grid.end = static_cast<uint64_t>(end);
-  return grid;
+  if (file_version >= kVdbInstances) read.parent = cursor.take_string();
+  read.begin = cursor.take<int64_t>();
+  cursor.take<int64_t>();  // where the buffers begin: 0 for a shared tree, and nobody asks for it
+  read.end = cursor.take<int64_t>();
+  return read;
 }
 
-void read_grid_head(FileCursor& cursor, VdbGrid& grid) {
+/// Takes the extent of a grid that the descriptor tells.
+void place_grid(const FileCursor& cursor, Descriptor& descriptor) {
+  const auto size = static_cast<int64_t>(cursor.file().size());
+  const auto [begin, end] = std::pair(descriptor.begin, descriptor.end);
+  if (begin < static_cast<int64_t>(cursor.offset()) || end < begin || end > size) {
+    cursor.file().fail_damaged(fmt::format("grid \"{}\" should stand at bytes {} to {} of {}",
+                                           descriptor.grid.name, begin, end, size));
+  }
+  descriptor.grid.begin = static_cast<uint64_t>(begin);
+  descriptor.grid.end = static_cast<uint64_t>(end);
+}
+
+/// @param archive flags of compression that hold for grids which don't tell
+void read_grid_head(FileCursor& cursor, uint32_t file_version, uint32_t archive, VdbGrid& grid) {
   cursor.seek(grid.begin);
-  grid.compression = cursor.take<uint32_t>();
-  if ((grid.compression & ~(kZip | kActiveMask | kBlosc)) != 0) {
+  grid.compression = file_version >= kVdbNodeCompression ? cursor.take<uint32_t>() : archive;
+  if ((grid.compression & ~(kVdbZip | kVdbActiveMask | kVdbBlosc)) != 0) {
     cursor.file().fail_damaged(
         fmt::format("grid \"{}\" has unknown compression {}", grid.name, grid.compression));
   }
   const Metadata metadata = read_metadata(cursor);
   grid.grid_class = metadata.grid_class;
   grid.half = grid.half || metadata.half;
-  grid.transform = cursor.offset();
-  grid.transform_type = cursor.take_string();
+  grid.body = cursor.offset();
 }
 
-uint32_t read_header(FileCursor& cursor, VdbDirectory& directory) {
+struct Header {
+  bool has_offsets = true;
+  uint32_t compression = kVdbZip;
+  uint32_t grids = 0;
+};
+
+Header read_header(FileCursor& cursor, VdbDirectory& directory) {
   cursor.skip(8);  // the magic number
   directory.file_version = cursor.take<uint32_t>();
   const std::string& name = cursor.file().name();
-  if (directory.file_version < kOldestVersion) {
-    fail("{}: OpenVDB file version {} is older than OpenVDB 3; save it again with a newer program",
+  if (directory.file_version < kVdbOldest) {
+    fail("{}: OpenVDB file version {} is older than OpenVDB 1; save it again with a newer program",
          name, directory.file_version);
   }
-  if (directory.file_version > kNewestVersion) {
+  if (directory.file_version > kVdbNewest) {
     fail("{}: OpenVDB file version {} is newer than this program can read (up to {})", name,
-         directory.file_version, kNewestVersion);
+         directory.file_version, kVdbNewest);
   }
+  Header header;
   directory.library_major = cursor.take<uint32_t>();
   directory.library_minor = cursor.take<uint32_t>();
-  const bool has_offsets = cursor.take<uint8_t>() != 0;
-  cursor.skip(kUuidBytes);
-  read_metadata(cursor);
-  if (!has_offsets) {
-    fail(
-        "{}: it was written as a stream, without a directory of its grids; save it as a file "
-        "(openvdb::io::File)",
-        name);
+  header.has_offsets = cursor.take<uint8_t>() != 0;
+  if (directory.file_version >= kVdbSelective && directory.file_version < kVdbNodeCompression) {
+    header.compression = cursor.take<uint8_t>() != 0 ? kVdbZip : 0;
   }
-  return cursor.take<uint32_t>();
+  cursor.skip(directory.file_version >= kVdbTextUuid ? kTextUuidBytes : kUuidBytes);
+  read_metadata(cursor);
+  header.grids = cursor.take<uint32_t>();
+  return header;
 }
 
-uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset) {
-  uint32_t word;
-  std::memcpy(&word, bytes.data() + offset, sizeof(word));
-  return word;
+/// Finds where a grid of a stream ends, by reading all that comes before.
+/// @return false if that can't be told
+bool find_end(FileCursor& cursor, const VdbDirectory& directory, VdbGrid& grid) {
+  const auto format = vdb_value_format(directory, grid);
+  if (!format && grid.tree_of < 0) {
+    grid.end = cursor.file().size();
+    grid.reason = fmt::format(
+        "the file is a stream, in which neither the end of a grid of type {} nor what is behind it "
+        "can be found; save it as a file (openvdb::io::File)",
+        vdb_value_type(grid));
+    return false;
+  }
+  const VdbPlaces places = read_vdb_places(cursor.file(), directory, grid);
+  if (places.end == 0) {
+    grid.end = cursor.file().size();
+    grid.reason = places.reason;
+    return false;
+  }
+  uint64_t end = places.end;
+  if (grid.tree_of < 0) {
+    const VdbTreeEnds tree = skip_vdb_topology(cursor.file(), places.topology, *format);
+    cursor.seek(std::max(tree.end, end));
+    for (uint64_t leaf = 0; leaf < tree.leaves; ++leaf) cursor.skip(vdb_leaf_size(cursor, *format));
+    end = cursor.offset();
+  }
+  cursor.seek(end);
+  grid.end = end;
+  return true;
 }
 
 }  // namespace
@@ -116,13 +155,13 @@ uint32_t word_at(std::span<const std::byte> bytes, std::size_t offset) {
 VdbDirectory read_vdb_directory(const VolumeFile& file) {
   FileCursor cursor(file, 0);
   VdbDirectory directory;
-  const uint32_t count = read_header(cursor, directory);
+  const Header header = read_header(cursor, directory);
   std::map<std::string, int> places;
-  for (uint32_t i = 0; i < count; ++i) {
-    std::string unique_name, parent;
-    VdbGrid grid = read_descriptor(cursor, unique_name, parent);
-    if (!parent.empty()) {
-      const auto found = places.find(parent);
+  for (uint32_t i = 0; i < header.grids; ++i) {
+    Descriptor descriptor = read_descriptor(cursor, directory.file_version);
+    VdbGrid& grid = descriptor.grid;
+    if (!descriptor.parent.empty()) {
+      const auto found = places.find(descriptor.parent);
       if (found == places.end()) {
         file.fail_damaged(
             fmt::format("grid \"{}\" shares the tree of a grid that isn't there", grid.name));
@@ -130,52 +169,31 @@ VdbDirectory read_vdb_directory(const VolumeFile& file) {
       const int shared = directory.grids[static_cast<std::size_t>(found->second)].tree_of;
       grid.tree_of = shared >= 0 ? shared : found->second;
     }
-    places.emplace(unique_name, static_cast<int>(i));
-    read_grid_head(cursor, grid);
+    places.emplace(descriptor.unique_name, static_cast<int>(i));
+    if (header.has_offsets) {
+      place_grid(cursor, descriptor);
+    } else {
+      grid.begin = cursor.offset();
+    }
+    read_grid_head(cursor, directory.file_version, header.compression, grid);
+    const bool goes_on = header.has_offsets || find_end(cursor, directory, grid);
     cursor.seek(grid.end);
     directory.grids.push_back(std::move(grid));
+    if (!goes_on) break;
   }
   return directory;
 }
 
-uint64_t vdb_value_block(FileCursor& cursor, uint64_t ahead, const VdbValueFormat& format,
-                         uint64_t count, uint64_t active) {
-  const VolumeFile& file = cursor.file();
-  // First a byte on how inactive values are stored: not at all, one or two of them with or without
-  // a mask that tells which is where, or all in full.
-  const auto kind = static_cast<uint8_t>(cursor.peek(ahead, 1)[0]);
-  if (kind > 6) file.fail_damaged(fmt::format("a node at byte {}", cursor.offset() + ahead));
-  uint64_t size = 1;
-  if (kind == 2 || kind == 4) size += format.value_size;
-  if (kind == 5) size += 2 * format.value_size;
-  if (kind >= 3 && kind <= 5) size += count / 8;
-  const bool active_only = (format.compression & kActiveMask) != 0 && kind != 6;
-  const uint64_t stored = active_only ? active : count;
-  const auto bytes = static_cast<int64_t>(stored * format.stored_size);
-  if (stored == 0 && format.stored_size != format.value_size) return size;
-  if ((format.compression & (kZip | kBlosc)) == 0) {
-    size += static_cast<uint64_t>(bytes);
-  } else {
-    // Then the size of the compressed values, or minus the size of uncompressed ones.
-    int64_t length;
-    std::memcpy(&length, cursor.peek(ahead + size, sizeof(length)).data(), sizeof(length));
-    size += sizeof(length);
-    constexpr int64_t kOverhead = 64;
-    bool sound = length <= 0 ? length == -bytes : length <= bytes + kOverhead;
-    if (sound && length > 0 && (format.compression & kBlosc) != 0) {
-      constexpr std::size_t kBloscHeader = 16;
-      const auto header = cursor.peek(ahead + size, kBloscHeader);
-      sound = length >= static_cast<int64_t>(kBloscHeader) && word_at(header, 4) == bytes &&
-              word_at(header, 12) == length;
-    }
-    if (!sound) {
-      file.fail_damaged(
-          fmt::format("the size of the values at byte {} is impossible", cursor.offset() + ahead));
-    }
-    size += static_cast<uint64_t>(length < 0 ? -length : length);
-  }
-  file.require(cursor.offset() + ahead, size);
-  return size;
+std::string vdb_value_type(const VdbGrid& grid) {
+  std::string_view type = grid.tree_type;
+  if (type.find("ptdataidx") != type.npos || type.find("ptidx") != type.npos) return "points";
+  constexpr std::string_view kPrefix = "Tree_", kSuffix = "_5_4_3";
+  if (!type.starts_with(kPrefix) || !type.ends_with(kSuffix)) return grid.tree_type;
+  type.remove_prefix(kPrefix.size());
+  type.remove_suffix(kSuffix.size());
+  if (type == "float" && grid.half) return "half";
+  if (type == "vec3s" && grid.half) return "vec3h";
+  return std::string(type);
 }
 
 }  // namespace freepath::io

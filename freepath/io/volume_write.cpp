@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <string>
 #include <system_error>
 
 #include <openvdb/io/File.h>
@@ -10,6 +13,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
+#include "freepath/io/content_digest.h"
 #include "freepath/io/volume_vdb_layout.h"
 
 namespace freepath {
@@ -79,6 +83,29 @@ class PartialFile {
   std::filesystem::path path_;
 };
 
+/// Puts a name of the contents where OpenVDB writes a random one, so that the same fields give the
+/// same bytes.
+void name_by_contents(const std::filesystem::path& path) {
+  constexpr std::streamoff kPlace = 21;  // behind magic number, versions and a flag
+  std::string name = "00000000-0000-0000-0000-000000000000";
+  const auto write = [&] {
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(kPlace);
+    file.write(name.data(), static_cast<std::streamsize>(name.size()));
+    file.close();
+    if (!file) fail("{}", std::generic_category().message(errno));
+  };
+  write();
+  ContentDigest digest;
+  digest.add_file(path.string());
+  const std::string digits = digest.hex();
+  auto digit = digits.begin();
+  for (char& c : name) {
+    if (c != '-') c = *digit++;
+  }
+  write();
+}
+
 void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids) {
   openvdb::io::File file(path.string());
   file.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
@@ -86,6 +113,7 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
   metadata.insertMeta("creator", openvdb::StringMetadata(fmt::format("freepath {}", version())));
   file.write(grids, metadata);
   file.close();
+  name_by_contents(path);
   // OpenVDB doesn't look whether the last bytes reached the disk; a full one cuts the file short.
   io::read_vdb_directory(io::VolumeFile(path));
 }

@@ -18,7 +18,7 @@ struct VdbWriteOptions {
 void check_vdb_place(const std::filesystem::path& path);
 
 /// Writes fields as float fog volumes of one .vdb file, compressed by blosc. Voxels of value 0 are
-/// inactive; a brick of one value becomes a tile.
+/// inactive; a brick of one value becomes a tile. The same fields give the same bytes.
 ///
 /// The file is written under another name in the same folder and then renamed: under its own name
 /// there is never a part of it, and an existing file is replaced only by a whole one.

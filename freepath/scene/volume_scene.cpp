@@ -192,6 +192,10 @@ Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up
   for (const Component& component : medium.components()) {
     add_occupied_corners(*component.density, corners);
   }
+  if (corners.empty()) {  // an empty medium
+    const Box3d box = medium.world_bounds();
+    corners = {box.min, box.max};
+  }
   View view = frame_points(corners, up, options.fov, aspect);
   if (options.from) view.from = *options.from;
   if (options.at) view.at = *options.at;
@@ -199,14 +203,25 @@ Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up
   return Camera(view, options.width, options.height);
 }
 
-Lights make_lights(const LightOptions& options, UpAxis up) {
+bool is_empty(const Medium& medium) {
+  const std::vector<Component>& components = medium.components();
+  const std::vector<float>& maxima = medium.super_voxels().maxima;
+  const auto is_computed = [](const Component& c) { return c.density->function != nullptr; };
+  return std::none_of(components.begin(), components.end(), is_computed) &&
+         std::all_of(maxima.begin(), maxima.end(), [](float most) { return most == 0; });
+}
+
+Lights make_lights(const LightOptions& options, UpAxis up, std::vector<std::string>* warnings) {
   std::optional<Sun> sun;
   if (options.sun) sun.emplace(options.sun_parameters, up);
   if (const auto* radiance = std::get_if<Spectrum>(&options.environment)) {
     return Lights(ConstantEnvironment(*radiance), sun);
   }
   if (const auto* file = std::get_if<std::string>(&options.environment)) {
-    return Lights(ImageEnvironment(read_image(*file), up, *file), sun);
+    Image image = read_image(*file);
+    std::string warning = mend_invalid_pixels(image, *file, options.invalid);
+    if (!warning.empty() && warnings != nullptr) warnings->push_back(std::move(warning));
+    return Lights(ImageEnvironment(image, up, *file), sun);
   }
   return Lights(make_sky(options.sun_parameters, up), sun);
 }

@@ -44,6 +44,7 @@ struct SkyEnvironment {};
 struct LightOptions {
   /// The sky, one radiance, or the name of a latitude-longitude image.
   std::variant<SkyEnvironment, Spectrum, std::string> environment = SkyEnvironment{};
+  InvalidPolicy invalid = InvalidPolicy::kZero;  ///< For pixels of the image.
   bool sun = true;  ///< Whether its disc shines; it shapes the sky in any case.
   SunParameters sun_parameters{.elevation = 40, .azimuth = 250};
 };
@@ -67,7 +68,12 @@ Medium make_medium(std::vector<Volume> volumes, int super_voxel);
 /// @throws Error as Camera and frame_points
 Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up);
 
+/// @param warnings gets what there is to say about the image, if not null
 /// @throws Error as Lights, its environments and the image reader
-Lights make_lights(const LightOptions& options, UpAxis up);
+Lights make_lights(const LightOptions& options, UpAxis up,
+                   std::vector<std::string>* warnings = nullptr);
+
+/// Whether there is nothing in a medium: its densities are 0 everywhere.
+bool is_empty(const Medium& medium);
 
 }  // namespace freepath

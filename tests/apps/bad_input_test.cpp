@@ -156,25 +156,39 @@ TEST_F(BadInputTest, DensitiesThatAreNone) {
       {"negative.vdb", -0.5F}};
   for (const auto& [name, value] : cases) {
     write_cube(path(name), with(value));
-    expect_error(std::string("render ") + name + rest, {name, "density", "1, -2, 3"});
+    expect_error(std::string("render ") + name + " --invalid error" + rest,
+                 {name, "density", "1, -2, 3"});
   }
+  const Outcome mended = run("render nan.vdb" + rest);
+  EXPECT_EQ(mended.status, 0) << mended;
+  EXPECT_NE(
+      mended.messages.find("freepath: warning: nan.vdb: grid \"density\": 1 values that are NaN"),
+      std::string::npos)
+      << mended;
+  EXPECT_NE(mended.messages.find("the first: voxel (1, -2, 3) is NaN"), std::string::npos)
+      << mended;
   const Outcome clamped = run("render negative.vdb --negative clamp" + rest);
   EXPECT_EQ(clamped.status, 0) << clamped;
   EXPECT_NE(clamped.messages.find("freepath: warning: "), std::string::npos) << clamped;
 }
 
-// What is good in a file is not told either: the one line is all that is said.
-TEST_F(BadInputTest, InfoOfAFileWhoseSecondGridIsTooLarge) {
+TEST_F(BadInputTest, InfoOfAFileWhoseSecondGridCannotBeLoaded) {
   testing_volumes::TestGrid small;
   small.name = "small";
   small.voxels = {{Vec3i(0), 1}};
   testing_volumes::TestGrid vast = small;
   vast.name = "vast";
-  vast.voxels.push_back({Vec3i(1 << 20), 1});
+  vast.tiles = {{Vec3i(4096, 0, -4096), 4096, 0.5}};  // a tile of the root
   testing_volumes::write_vdb_file(path("two.vdb"), {small, vast});
-  expect_error("info two.vdb", {"two.vdb", "vast", "crop"});
-  expect_error("info two.vdb --json", {"two.vdb", "vast", "crop"});
+  for (const char* command : {"info two.vdb", "info two.vdb --json"}) {
+    const Outcome info = run(command);
+    EXPECT_EQ(info.status, 0) << info;
+    for (const char* part : {"small", "vast", "the active voxels span"}) {
+      EXPECT_NE(info.output.find(part), std::string::npos) << part << info;
+    }
+  }
   EXPECT_EQ(run("info two.vdb --grid small").status, 0);
+  expect_error("render two.vdb --grid vast -o picture.exr", {"two.vdb", "vast", "crop"});
 }
 
 TEST_F(BadInputTest, EnvironmentsThatAreNone) {
@@ -185,8 +199,16 @@ TEST_F(BadInputTest, EnvironmentsThatAreNone) {
   expect_render_error("--environment missing.hdr", {"missing.hdr"});
   expect_render_error("--environment text.hdr", {"text.hdr"});
   for (const char* name : {"nan.exr", "inf.exr", "negative.exr"}) {
-    expect_render_error(std::string("--environment ") + name, {name, "5", "3"});
+    expect_render_error(std::string("--invalid error --environment ") + name, {name, "5", "3"});
   }
+  const Outcome mended =
+      run("render ball.vdb --environment nan.exr -o picture.exr --size 8x8 --spp 1");
+  EXPECT_EQ(mended.status, 0) << mended;
+  EXPECT_NE(
+      mended.messages.find("nan.exr: 1 pixels with values that are NaN or infinite were taken "
+                           "as 0; the first: pixel (5, 3) is NaN"),
+      std::string::npos)
+      << mended;
 }
 
 TEST_F(BadInputTest, OutputsThatCannotBe) {

@@ -13,6 +13,7 @@
 #include "freepath/io/image.h"
 #include "tests/apps/program.h"
 #include "tests/apps/scene_files.h"
+#include "tests/io/volume_oddities.h"
 
 namespace freepath::testing {
 namespace {
@@ -183,6 +184,30 @@ TEST_F(FramesTest, TheCameraIsFramedOnceFromTheFirstFrame) {
   EXPECT_GT(covered("p.1.exr"), 1);
   ASSERT_EQ(render(placed + "1,4").status, 0);
   EXPECT_EQ(values("p.1.exr"), first);
+}
+
+TEST_F(FramesTest, EmptyFramesAreBackgroundAndTheCameraIsThatOfTheFirstOther) {
+  testing_volumes::write_vdb_empty(path("some.0001.vdb"));
+  write_cube(path("some.0002.vdb"));
+  const Outcome outcome = render("some.%04d.vdb --frames 1-2 -o e.%d.exr");
+  ASSERT_EQ(outcome.status, 0) << outcome;
+  EXPECT_NE(outcome.messages.find("some.0001.vdb: grid \"density\": it has no active voxels: it is "
+                                  "empty"),
+            std::string::npos)
+      << outcome;
+  ASSERT_EQ(render("some.0002.vdb -o alone.exr").status, 0);
+  EXPECT_EQ(values("e.2.exr"), values("alone.exr"));
+  const Image image = read_image(path("e.1.exr"));
+  const int alpha = find_channel(image, "A").value();
+  for (std::size_t i = alpha; i < image.values.size(); i += image.channels.size()) {
+    ASSERT_EQ(image.values[i], 0);
+  }
+  // One of several volumes, before or behind, is as if it weren't there.
+  ASSERT_EQ(render("some.0001.vdb some.0002.vdb -o both.exr").status, 0);
+  EXPECT_EQ(values("both.exr"), values("alone.exr"));
+  const Outcome info = run("info some.0001.vdb");
+  EXPECT_EQ(info.status, 0) << info;
+  EXPECT_NE(info.output.find("it is empty"), std::string::npos) << info;
 }
 
 TEST_F(FramesTest, VolumesWithoutAPlaceStayTheSame) {

@@ -32,6 +32,12 @@ std::vector<std::string> messages_for(const TestGrid& grid, const LoadOptions& o
           error_of([&] { load_field(folder / "a.nvdb", options); })};
 }
 
+LoadOptions refusing() {
+  LoadOptions options;
+  options.invalid = InvalidPolicy::kError;
+  return options;
+}
+
 TEST(VolumeErrors, MissingFileDirectoryEmptyFileAndOtherFormats) {
   const TemporaryFolder folder;
   const auto load = [&](const char* name) { return error_of([&] { load_field(folder / name); }); };
@@ -53,7 +59,7 @@ TEST(VolumeErrors, TheFormatIsToldByContentNotByName) {
   EXPECT_NO_THROW(load_field(folder / "open.nvdb"));
 }
 
-TEST(VolumeErrors, LevelSetsPointsFrustumsAndEmptyGrids) {
+TEST(VolumeErrors, LevelSetsAndPoints) {
   const TemporaryFolder folder;
   TestGrid level_set = sample_grid();
   level_set.level_set = true;
@@ -64,18 +70,10 @@ TEST(VolumeErrors, LevelSetsPointsFrustumsAndEmptyGrids) {
   write_vdb_points(folder / "points.vdb");
   expect_contains(error_of([&] { load_field(folder / "points.vdb"); }),
                   {"grid \"particles\"", "points"});
-  write_vdb_frustum(folder / "frustum.vdb");
-  expect_contains(error_of([&] { load_field(folder / "frustum.vdb"); }),
-                  {"grid \"density\"", "frustum"});
-  for (const std::string& message : messages_for(TestGrid{})) {
-    expect_contains(message, {"grid \"density\"", "no active voxels"});
-  }
-  for (const char* name : {"points.vdb", "frustum.vdb"}) {
-    const auto grids = list_grids(folder / name);
-    ASSERT_EQ(grids.size(), 1U) << name;
-    EXPECT_FALSE(grids[0].loadable) << name;
-    EXPECT_FALSE(grids[0].reason.empty()) << name;
-  }
+  const auto grids = list_grids(folder / "points.vdb");
+  ASSERT_EQ(grids.size(), 1U);
+  EXPECT_FALSE(grids[0].loadable);
+  EXPECT_FALSE(grids[0].reason.empty());
 }
 
 TEST(VolumeErrors, AFileWithoutGrids) {
@@ -95,14 +93,37 @@ TEST(VolumeErrors, NanInfinityAndNegativeNameTheVoxel) {
     grid.voxels[3].value = value;
     const Vec3i place = grid.voxels[3].place;
     const std::string voxel = fmt::format("voxel ({}, {}, {}) ", place.x, place.y, place.z);
-    for (const std::string& message : messages_for(grid)) {
+    for (const std::string& message : messages_for(grid, refusing())) {
       expect_contains(message, {"grid \"density\"", voxel, text});
     }
     TestGrid tiled;
     tiled.tiles = {{Vec3i(64, 128, -8), 8, value}};
-    for (const std::string& message : messages_for(tiled)) {
+    for (const std::string& message : messages_for(tiled, refusing())) {
       expect_contains(message, {"voxel (64, 128, -8)", text});
     }
+  }
+}
+
+TEST(VolumeErrors, InvalidValuesBecomeZeroWithOneWarning) {
+  const TemporaryFolder folder;
+  TestGrid grid = sample_grid();
+  grid.voxels[3].value = kNan;
+  grid.voxels[7].value = kInfinity;
+  grid.tiles[0].value = -kInfinity;  // 8³ voxels
+  write_vdb_file(folder / "a.vdb", {grid});
+  write_nvdb_file(folder / "a.nvdb", {grid});
+  for (const char* name : {"a.vdb", "a.nvdb"}) {
+    const LoadedField loaded = load_field(folder / name);
+    EXPECT_EQ(loaded.invalid_voxels, 2U + 512U) << name;
+    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[3].place), 0);
+    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[7].place), 0);
+    EXPECT_EQ(loaded.field.voxels.value(grid.tiles[0].origin), 0);
+    ASSERT_EQ(loaded.warnings.size(), 1U);
+    const Vec3i place = grid.voxels[3].place;
+    expect_contains(loaded.warnings[0],
+                    {name, "density", "514 values",
+                     fmt::format("voxel ({}, {}, {}) is NaN", place.x, place.y, place.z)});
+    EXPECT_TRUE(list_grids(folder / name)[0].loadable);
   }
 }
 
@@ -113,8 +134,11 @@ TEST(VolumeErrors, DoublesOutOfTheRangeOfFloatNameTheVoxel) {
   write_vdb_file(folder / "a.vdb", {grid}, VdbValues::kDouble);
   write_nvdb_file(folder / "a.nvdb", {grid}, NvdbValues::kDouble);
   for (const char* name : {"a.vdb", "a.nvdb"}) {
-    expect_contains(error_of([&] { load_field(folder / name); }),
+    expect_contains(error_of([&] { load_field(folder / name, refusing()); }),
                     {"voxel (-8, 256, 21)", "1e+39", "range of float"});
+    const LoadedField mended = load_field(folder / name);
+    EXPECT_EQ(mended.invalid_voxels, 1U);
+    EXPECT_EQ(mended.field.voxels.value(Vec3i(-8, 256, 21)), 0);
   }
 }
 
@@ -138,6 +162,7 @@ TEST(VolumeErrors, ClampingTakesNegativeAsZeroButNeverNan) {
     expect_contains(loaded.warnings[0], {name, "density", "514 negative"});
   }
   grid.voxels[1].value = kNan;
+  options.invalid = InvalidPolicy::kError;
   for (const std::string& message : messages_for(grid, options)) {
     expect_contains(message, {"is NaN"});
   }

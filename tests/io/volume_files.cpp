@@ -204,13 +204,6 @@ void write_vdb_points(const std::filesystem::path& path) {
   write_openvdb(path, {grid}, Codec::kBlosc);
 }
 
-void write_vdb_frustum(const std::filesystem::path& path) {
-  auto grid = openvdb_grid<openvdb::FloatGrid>(sample_grid());
-  grid->setTransform(openvdb::math::Transform::createFrustumTransform(
-      openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(100)), 0.5, 10, 0.1));
-  write_openvdb(path, {grid}, Codec::kBlosc);
-}
-
 void write_nvdb_file(const std::filesystem::path& path, const std::vector<TestGrid>& grids,
                      NvdbValues values, Codec codec) {
   std::vector<nanovdb::GridHandle<>> handles;

@@ -82,7 +82,6 @@ void write_nvdb_vectors(const std::filesystem::path& path, const std::array<Test
 
 /// Grids no density can be read from.
 void write_vdb_points(const std::filesystem::path& path);
-void write_vdb_frustum(const std::filesystem::path& path);
 
 enum class NvdbValues { kFloat, kDouble, kFp4, kFp8, kFp16, kFpN };
 

@@ -185,7 +185,7 @@ TEST(VolumeLoad, ABackgroundOtherThanZeroIsWarnedOfAndCountsAsZero) {
     const LoadedField loaded = load_field(folder / name);
     EXPECT_EQ(loaded.field.voxels.value(Vec3i(1)), 0) << name;
     ASSERT_EQ(loaded.warnings.size(), 1U) << name;
-    EXPECT_NE(loaded.warnings[0].find("inactive voxels hold 0.5"), std::string::npos);
+    EXPECT_NE(loaded.warnings[0].find("its background is 0.5"), std::string::npos);
   }
 }
 

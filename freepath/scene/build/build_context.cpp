@@ -99,4 +99,14 @@ fs::path file_of(BuildContext& context, const ParameterList& list, std::string_v
           candidates[0].string());
 }
 
+Image read_scene_image(BuildContext& context, const std::string& path,
+                       const SourceLocation& location) {
+  return at_location(location, [&] {
+    Image image = read_image(path);
+    const std::string warning = mend_invalid_pixels(image, path, context.invalid);
+    if (!warning.empty()) context.diagnostics.warn(location, warning);
+    return in_srgb(std::move(image));
+  });
+}
+
 }  // namespace freepath

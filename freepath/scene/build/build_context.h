@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "freepath/io/invalid_values.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/scene/pbrt/diagnostics.h"
 #include "freepath/scene/pbrt/scene.h"
@@ -34,6 +35,8 @@ struct BuildContext {
   std::vector<std::optional<uint32_t>> materials = {};
   /// Files that statements name (file_of).
   std::vector<std::filesystem::path> files = {};
+  /// For voxels and pixels that are NaN or infinite.
+  InvalidPolicy invalid = InvalidPolicy::kZero;
 };
 
 /// Which spectrum a parameter's colour stands for.
@@ -56,6 +59,12 @@ SpectralDistribution distribution_of(BuildContext& context, const SpectrumValue&
 /// @throws Error with file:line:column if there is none
 std::filesystem::path file_of(BuildContext& context, const ParameterList& list,
                               std::string_view name);
+
+/// The image that a statement names, in sRGB; pixels that can't be used are treated as
+/// BuildContext::invalid says.
+/// @throws Error with file:line:column
+Image read_scene_image(BuildContext& context, const std::string& path,
+                       const SourceLocation& location);
 
 /// Calls a function and puts file:line:column before the message of an Error that it throws.
 template <class Function>

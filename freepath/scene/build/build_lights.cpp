@@ -51,9 +51,7 @@ class LightReader {
 
   LightImage image(std::string_view parameter) {
     const std::string path = file_of(context_, list_, parameter).string();
-    return at_location(list_.location_of(parameter), [&] {
-      return LightImage{path, in_srgb(read_image(path))};
-    });
+    return LightImage{path, read_scene_image(context_, path, list_.location_of(parameter))};
   }
 
  private:

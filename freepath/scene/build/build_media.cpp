@@ -319,6 +319,7 @@ class MediumReader {
     LoadOptions options;
     options.selection.name = name;
     options.scalar_only = true;
+    options.invalid = context_.invalid;
     LoadedField loaded = load_field(file, options);
     for (const std::string& warning : loaded.warnings) {
       context_.diagnostics.warn(medium_.location, warning);
@@ -329,7 +330,7 @@ class MediumReader {
   }
 
   bool has_grid(const std::filesystem::path& file, const std::string& name) const {
-    const std::vector<GridInfo> grids = list_grids(file);
+    const std::vector<GridInfo> grids = list_grid_heads(file);
     return std::any_of(grids.begin(), grids.end(),
                        [&](const GridInfo& info) { return info.name == name; });
   }

@@ -79,6 +79,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   PathScene& scene = built.scene;
   scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space(name_of(pbrt.color_space)));
   BuildContext context{pbrt, diagnostics, scene};
+  context.invalid = options.invalid;
   FilmSize size;
   built.picture = build_picture(context, size);
   scene.exposure_scale = built.picture.exposure_scale;

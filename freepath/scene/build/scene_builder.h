@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "freepath/io/invalid_values.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/scene/build/build_camera.h"
 #include "freepath/scene/pbrt/diagnostics.h"
@@ -22,7 +23,8 @@ struct BuiltScene {
 
 /// What may be said about a scene from outside of its file.
 struct BuildOptions {
-  std::optional<FilmSize> size;  ///< Replaces the film's.
+  std::optional<FilmSize> size = {};  ///< Replaces the film's.
+  InvalidPolicy invalid = InvalidPolicy::kZero;
 };
 
 /// Builds a scene. Every parameter that is not understood is named in `diagnostics`.
