@@ -168,13 +168,13 @@ std::string file_name_of(const std::string& method) {
 }
 
 void write_report(const Comparison& comparison, const ReportContext& context,
-                  const ReportFolder& folder) {
+                  ReportFolder& folder) {
   for (std::size_t i = 0; i < comparison.references.size(); ++i) {
-    write_exr(folder.file(i == 0 ? "reference.exr" : "reference_2.exr"),
-              to_image(comparison.references[i].estimates));
+    folder.write(i == 0 ? "reference.exr" : "reference_2.exr",
+                 to_image(comparison.references[i].estimates));
   }
   for (const ConfigurationResult& result : comparison.configurations) {
-    write_exr(folder.file(file_name_of(result.name) + ".exr"), to_image(result.together));
+    folder.write(file_name_of(result.name) + ".exr", to_image(result.together));
   }
   for (const NamedFigure& figure : figures_of(comparison)) {
     folder.write(figure.file_name, figure.svg);
@@ -211,7 +211,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
   }
   // What is wrong with the names of methods is said before anything is loaded.
   read_configurations(options, "delta");
-  const ReportFolder folder(options.folder);
+  ReportFolder folder(options.folder);
   const LoadedSubject loaded = load_subject(command, options.picture);
   const ComparisonSettings settings = read_settings(command, options, loaded);
   const Comparison comparison = [&] {
@@ -229,6 +229,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
                               .exposure = options.exposure};
   write_report(comparison, context, folder);
   print_table(comparison);
+  folder.finish();
   print("wrote {}\n", folder.file("report.html"));
   if (!options.check) return;
   for (const ConfigurationResult& result : comparison.configurations) {

@@ -6,13 +6,16 @@
 
 #include <cerrno>
 #include <csignal>
+#include <exception>
 #include <mutex>
+#include <new>
 #include <system_error>
 
 namespace freepath::program {
 namespace {
 
 constexpr std::size_t kLargestBuffer = 1 << 16;
+constexpr int kUnexpected = 3;               // exit status
 constexpr int kEndedByPipe = 128 + SIGPIPE;  // as shells say it
 
 struct Console {
@@ -62,13 +65,45 @@ void occupy(int stream) {
   (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
+/// What the libraries can't go on with, as a line and a status instead of an abort.
+[[noreturn]] void end_by_exception() {
+  int status = kUnexpected;
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    tell("freepath: internal error: terminated\n");
+  } catch (const std::exception& error) {
+    status = tell_unexpected(error);
+  } catch (...) {
+    tell("freepath: internal error: unknown reason\n");
+  }
+  _exit(status);
+}
+
 }  // namespace
 
 void prepare_console() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) occupy(stream);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  std::set_terminate(end_by_exception);
   console().lost = 0;
+}
+
+int tell_unexpected(const std::exception& error) {
+  const std::string reason = error.what();
+  const auto* const system = dynamic_cast<const std::system_error*>(&error);
+  const bool no_threads = reason.find("pthread_create") != std::string::npos ||
+                          (system != nullptr && system->code().value() == EAGAIN);
+  if (no_threads) {
+    tell("freepath: error: the system grants no more threads ({}); give fewer --threads\n", reason);
+    return 1;
+  }
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+    tell("freepath: error: out of memory\n");
+    return 1;
+  }
+  tell("freepath: internal error: {}\n", reason);
+  return kUnexpected;
 }
 
 int finish_console(int status) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -17,6 +18,10 @@ namespace freepath::program {
 /// Readies the standard streams: closed ones are taken by /dev/null, lest a picture become standard
 /// error, and a stream that takes nothing is an error of its own instead of the program's end.
 void prepare_console();
+
+/// Tells of an exception that nobody expected.
+/// @return the exit status
+int tell_unexpected(const std::exception& error);
 
 /// Writes what is left of the results.
 /// @param status of the program so far

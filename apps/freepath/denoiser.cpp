@@ -1,11 +1,15 @@
 #include "apps/freepath/denoiser.h"
 
 #include <dlfcn.h>
+#include <glob.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -38,9 +42,8 @@ std::vector<float> packed(const Image& image, const std::array<const char*, kRgb
 void put_denoised(Image& image, const std::vector<float>& denoised) {
   const std::array<int, kRgb> colour = colour_channels(image, "the picture");
   const std::size_t before = image.channels.size();
-  for (const char* name : {"noisy.R", "noisy.G", "noisy.B"}) image.channels.emplace_back(name);
   std::vector<float> values;
-  values.reserve(image.pixel_count() * image.channels.size());
+  values.reserve(image.pixel_count() * (before + kRgb));
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
     const float* const old = image.values.data() + pixel * before;
     const std::size_t begin = values.size();
@@ -50,7 +53,45 @@ void put_denoised(Image& image, const std::vector<float>& denoised) {
       values[begin + colour[c]] = denoised[pixel * kRgb + c];
     }
   }
+  // All at once, lest an image be left that is neither.
+  std::vector<std::string> channels = image.channels;
+  for (const char* name : {"noisy.R", "noisy.G", "noisy.B"}) channels.emplace_back(name);
+  image.channels = std::move(channels);
   image.values = std::move(values);
+}
+
+constexpr std::array kLibraryNames{"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
+                                   "libOpenImageDenoise.so.0", "libOpenImageDenoise.so"};
+
+/// The libraries at a place: a library, a folder of libraries or above one, or a virtual
+/// environment of Python's with the package pyoidn.
+std::vector<std::string> libraries_at(const std::string& place) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(place, ignored)) return {place};
+  std::vector<std::string> found;
+  for (const char* folder :
+       {"", "/lib", "/lib64", "/lib/python3*/site-packages/pyoidn/oidn/lib", "/pyoidn/oidn/lib"}) {
+    for (const char* name : kLibraryNames) {
+      glob_t matches{};
+      if (glob((place + folder + "/" + name).c_str(), 0, nullptr, &matches) == 0) {
+        found.insert(found.end(), matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
+      }
+      globfree(&matches);
+    }
+  }
+  for (std::string& name : found) name = std::filesystem::absolute(name, ignored).string();
+  return found;
+}
+
+/// Those of the loader's search path, and of the virtual environment that is active.
+std::vector<std::string> usual_libraries() {
+  std::vector<std::string> libraries(kLibraryNames.begin(), kLibraryNames.end());
+  const char* const environment = std::getenv("VIRTUAL_ENV");
+  if (environment != nullptr && *environment != 0) {
+    const std::vector<std::string> more = libraries_at(environment);
+    libraries.insert(libraries.end(), more.begin(), more.end());
+  }
+  return libraries;
 }
 
 }  // namespace
@@ -96,19 +137,24 @@ Denoiser::~Denoiser() {
 
 std::shared_ptr<const Denoiser> Denoiser::load() {
   const std::shared_ptr<Denoiser> denoiser(new Denoiser);
-  for (const char* name : {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
-                           "libOpenImageDenoise.so.0", "libOpenImageDenoise.so"}) {
-    denoiser->library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
-    if (denoiser->library_ == nullptr) continue;
+  const char* const chosen = std::getenv("FREEPATH_OIDN");
+  const bool is_chosen = chosen != nullptr && *chosen != 0;
+  std::string reason = "no such library there";
+  for (const std::string& name : is_chosen ? libraries_at(chosen) : usual_libraries()) {
+    denoiser->library_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (denoiser->library_ == nullptr) {
+      reason = dlerror();
+      continue;
+    }
     if (denoiser->functions_->find(denoiser->library_)) return denoiser;
-    dlclose(denoiser->library_);
-    denoiser->library_ = nullptr;
+    reason = name + " is no Open Image Denoise";
+    dlclose(std::exchange(denoiser->library_, nullptr));
   }
+  if (is_chosen) fail("--denoise: FREEPATH_OIDN is {}: {}", chosen, reason);
   fail(
       "--denoise needs Open Image Denoise, and no libOpenImageDenoise.so.2, .1 or .0 can be "
-      "loaded; install it (Debian, Ubuntu: apt install libopenimagedenoise1; others: "
-      "https://www.openimagedenoise.org) and have LD_LIBRARY_PATH name its folder if that is not "
-      "a standard one");
+      "loaded; 'python3 -m venv oidn; oidn/bin/pip install --no-deps pyoidn' gets it, and "
+      "FREEPATH_OIDN=oidn names that folder, or any other that it is in");
 }
 
 void Denoiser::denoise(Image& image, const Image& guides) const {

@@ -10,7 +10,9 @@ namespace freepath::program {
 /// Takes the noise out of pictures.
 class Denoiser {
  public:
-  /// Loads the library, version 0, 1 or 2 of it.
+  /// Loads the library, version 0, 1 or 2 of it: the one that the environment variable
+  /// FREEPATH_OIDN names, itself or a folder; else the loader's, or the active virtual
+  /// environment's.
   /// @throws Error that says how to get it, if there is none
   static std::shared_ptr<const Denoiser> load();
   ~Denoiser();

@@ -54,14 +54,14 @@ void run(GenerateOptions& options) {
     fail("{}: a volume is written as OpenVDB; give the file a name that ends in .vdb",
          options.output);
   }
-  check_vdb_place(options.output);
+  AsideFile file(options.output);  // before the time is spent
   options.volume.progress = show_progress;
   const std::vector<Field> fields = kGenerators.at(options.kind)(options.volume);
   clear_status();
   std::vector<const Field*> pointers;
   pointers.reserve(fields.size());
   for (const Field& field : fields) pointers.push_back(&field);
-  write_vdb(options.output, pointers, {.half = options.half});
+  write_vdb(file, pointers, {.half = options.half});
 }
 
 }  // namespace

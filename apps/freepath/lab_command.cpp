@@ -90,7 +90,7 @@ LabOptions read_options(const LabCommandOptions& options) {
   lab.trackers = read_trackers(options.trackers);
   lab.paths = parse_count(options.paths, "--paths", 1000, 1e12);
   lab.seed = options.seed;
-  lab.threads = options.threads;
+  lab.threads = settle_threads(options.threads);
   lab.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
   return lab;
 }
@@ -155,7 +155,7 @@ void run(const LabCommandOptions& options) {
   }
   const LabOptions lab = read_options(options);
   if (options.folder.empty()) fail("-o is missing: name a folder for the report, or take --list");
-  const ReportFolder folder(options.folder);  // before the time is spent
+  ReportFolder folder(options.folder);  // before the time is spent
   const StopOnInterrupt stop;
   ProgressLine line;
   LabResult result;
@@ -173,6 +173,7 @@ void run(const LabCommandOptions& options) {
   const std::vector<LabFile> files = lab_files(result, command_line());
   for (const LabFile& file : files) folder.write(file.name, file.content);
   print_table(result);
+  folder.finish();
   print("{} files in {}: open {}\n", files.size(), options.folder, folder.file("report.html"));
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/freepath/console.h"
 #include "freepath/base/error.h"
+#include "freepath/base/thread_limit.h"
 #include "freepath/transport/walker.h"
 
 namespace freepath::program {
@@ -101,6 +102,8 @@ void fail_choice(std::string_view text, std::string_view option,
   }
   fail("{}: '{}' is not one of: {}", option, text, list);
 }
+
+int settle_threads(int wished) { return wished > 0 ? granted_threads(wished) : 0; }
 
 void warn_if_biased(const std::string& tracker) {
   const std::string name = parse_method(tracker, tracker_infos()).name;

@@ -74,6 +74,10 @@ Value parse_choice(std::string_view text, std::string_view option,
   fail_choice(text, option, names);
 }
 
+/// The threads to work on: as many as are wished, or as the system grants if those are fewer.
+/// @param wished 0: as many as the machine has
+int settle_threads(int wished);
+
 /// Prints a warning for a tracker that is biased.
 void warn_if_biased(const std::string& tracker);
 

@@ -188,7 +188,7 @@ Interpolation read_interpolation(const std::string& text) {
 
 RenderSettings read_run_settings(const PictureOptions& options) {
   RenderSettings settings;
-  settings.threads = options.threads;
+  settings.threads = settle_threads(options.threads);
   settings.wavelengths = options.wavelengths;
   settings.batch = options.batch;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
@@ -206,7 +206,9 @@ std::string read_method(const std::string& text, std::string_view option,
 }
 
 std::string read_tracker(const std::string& text, std::string_view option) {
-  return text == kAutoTracker ? text : read_method(text, option, tracker_infos());
+  std::vector<MethodInfo> known(tracker_infos().begin(), tracker_infos().end());
+  known.push_back(kAutoInfo);
+  return read_method(text, option, known);
 }
 
 std::string method_names(std::span<const MethodInfo> infos) {

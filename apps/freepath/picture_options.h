@@ -39,6 +39,12 @@ struct PictureOptions {
 /// Adds all of them: volumes or a scene, size, camera, lights, what paths do and what they run on.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
+/// `auto` stands for another tracker, and is in no registry.
+inline constexpr MethodInfo kAutoInfo = {
+    "auto", "chooses a tracker from the medium and says which and why",
+    "",     "as the tracker it chooses",
+    "",     {}};
+
 /// What to load, where a number given to --emission counts as one given to --le.
 std::vector<VolumePlan> read_volumes(const PictureOptions& options);
 LightOptions read_lights(const PictureOptions& options);

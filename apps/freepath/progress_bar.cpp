@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -16,9 +17,13 @@ namespace {
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void on_interrupt(int signal) {
+/// Signals that mean the end is near: what there is had better be saved.
+constexpr std::array kEndings{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+
+void on_ending(int signal) {
   interrupted = true;
-  std::signal(signal, SIG_DFL);
+  // Who asks twice, insists. A lost terminal and used-up time tell more than once by themselves.
+  if (signal == SIGINT || signal == SIGTERM) std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
@@ -55,15 +60,20 @@ std::string clock_text(double seconds) {
 
 StopOnInterrupt::StopOnInterrupt() {
   interrupted = false;
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  for (const int signal : kEndings) {
+    // Under nohup, a lost terminal means nothing.
+    if (std::signal(signal, on_ending) == SIG_IGN && signal == SIGHUP) {
+      std::signal(signal, SIG_IGN);
+    }
+  }
 }
 
 StopOnInterrupt::~StopOnInterrupt() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  for (const int signal : kEndings) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
-bool StopOnInterrupt::requested() const { return interrupted; }
+bool StopOnInterrupt::requested() { return interrupted; }
 
 }  // namespace freepath::program

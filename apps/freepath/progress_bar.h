@@ -26,15 +26,16 @@ class ProgressBar {
 /// "1:02:03", "2:03" or "0:03" for seconds.
 std::string clock_text(double seconds);
 
-/// While one of these lives, the first Ctrl-C is taken as a wish to stop; a second one ends the
-/// program as usual.
+/// While one of these lives, the first Ctrl-C is taken as a wish to stop, as are SIGTERM, the loss
+/// of the terminal (SIGHUP) and of time (SIGXCPU); a second Ctrl-C or SIGTERM ends the program as
+/// usual.
 class StopOnInterrupt {
  public:
   StopOnInterrupt();
   ~StopOnInterrupt();
   StopOnInterrupt(const StopOnInterrupt&) = delete;
   StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-  bool requested() const;
+  static bool requested();
 };
 
 }  // namespace freepath::program

@@ -10,14 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "apps/freepath/attempts.h"
 #include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 #include "freepath/io/aside_file.h"
-#include "freepath/io/image.h"
-#include "freepath/io/image_plain.h"
+#include "freepath/io/image_aside.h"
 
 namespace freepath::program {
 namespace {
@@ -141,25 +141,48 @@ void print_counts(const std::string& method, const char* unit, const WalkStatist
       counts.largest_weight, counts.negative_weights, counts.bound_violations);
 }
 
+/// Keeps a picture that could not be written where it should be; says where.
+[[noreturn]] void keep_elsewhere(const Image& image) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / fmt::format("freepath-{}.exr", random_word()))
+          .string();
+  write_exr(file, image);
+  fail("the picture is kept in {}", file);
+}
+
 }  // namespace
 
-void write_outputs(const std::vector<std::string>& files, const OutputPlan& plan,
-                   const RenderResult& result, const RenderReport& report) {
+PictureFilesAside::PictureFilesAside(const std::vector<std::string>& pictures,
+                                     const std::string& statistics) {
+  for (const std::string& picture : pictures) pictures_.emplace_back(picture);
+  if (!statistics.empty()) statistics_.emplace(statistics);
+}
+
+void PictureFilesAside::write(const OutputPlan& plan, const RenderResult& result,
+                              const RenderReport& report) {
+  Attempts attempts;
   Image image = result.film.to_image(plan.film.written());
   if (plan.film.denoiser) {
-    plan.film.denoiser->denoise(image, result.film.to_image({Layer::kAlbedo, Layer::kNormal}));
+    attempts.attempt([&] {
+      plan.film.denoiser->denoise(image, result.film.to_image({Layer::kAlbedo, Layer::kNormal}));
+    });
   }
-  if (plan.display != nullptr) plan.display->show(image);
   add_metadata(image, result, report);
-  for (const std::string& file : files) {
-    if (is_plain_image(file)) {
-      write_plain_image(file, image, plan.exposure);
-    } else if (image_format(file) == ImageFormat::kPng) {
-      write_png(file, image, plan.exposure);
-    } else {
-      write_exr(file, image);
-    }
+  bool is_kept = false;
+  for (AsideFile& file : pictures_) {
+    const bool is_written = attempts.attempt([&] { write_image(file, image, plan.exposure); });
+    is_kept |= is_written && is_exr(file.path());
   }
+  const bool is_lost = !is_kept && attempts.failed();
+  if (statistics_) {
+    attempts.attempt([&] {
+      statistics_->write(json_text(statistics_json(result, report), 2) + '\n');
+      statistics_->replace_target();
+    });
+  }
+  if (is_lost) attempts.attempt([&] { keep_elsewhere(image); });
+  if (plan.display != nullptr) plan.display->show_last(image);
+  attempts.finish();
 }
 
 void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
@@ -175,11 +198,6 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
       fail("--stats {}: would overwrite {}; choose another name", file, other);
     }
   }
-}
-
-void write_statistics(const std::string& file, const RenderResult& result,
-                      const RenderReport& report) {
-  write_file(file, json_text(statistics_json(result, report), 2) + '\n');
 }
 
 void print_warnings(const RenderResult& result) {

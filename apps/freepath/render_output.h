@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/freepath/film_options.h"
+#include "freepath/io/aside_file.h"
 #include "freepath/render/renderer.h"
 
 namespace freepath::program {
@@ -47,10 +48,24 @@ struct OutputPlan {
   TevDisplay* display = nullptr;  ///< Shows the picture as it is written; may be null.
 };
 
-/// Writes the picture under each name, .exr with layers and metadata.
-/// @throws Error as the denoiser and the image writers
-void write_outputs(const std::vector<std::string>& files, const OutputPlan& plan,
-                   const RenderResult& result, const RenderReport& report);
+/// The files of a picture, open from before it is rendered, so that what hinders them is told then.
+class PictureFilesAside {
+ public:
+  /// @param pictures .exr with layers and metadata, or .png
+  /// @param statistics JSON; may be empty: none
+  /// @throws Error as AsideFile
+  PictureFilesAside(const std::vector<std::string>& pictures, const std::string& statistics);
+
+  /// Writes each, whatever becomes of the others, and shows the picture then.
+  /// @throws Error that names all that failed, once the others are written. A picture that none of
+  ///   the files holds with all its layers is then kept in the folder of temporary files, if that
+  ///   can be, and the message says where.
+  void write(const OutputPlan& plan, const RenderResult& result, const RenderReport& report);
+
+ private:
+  std::vector<AsideFile> pictures_;
+  std::optional<AsideFile> statistics_;
+};
 
 /// Checks, before the time is spent, that statistics could be written, and over neither a picture
 /// nor a volume.
@@ -58,11 +73,6 @@ void write_outputs(const std::vector<std::string>& files, const OutputPlan& plan
 /// @throws Error that names the file and what to do
 void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,
                            const std::vector<std::string>& volumes);
-
-/// Writes the statistics as one JSON object, aside and then renamed.
-/// @throws Error that names the file
-void write_statistics(const std::string& file, const RenderResult& result,
-                      const RenderReport& report);
 
 /// Tells on standard error what makes a picture less than it should be.
 void print_warnings(const RenderResult& result);

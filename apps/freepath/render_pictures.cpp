@@ -79,6 +79,7 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   RenderSettings& settings = report.settings;
   settings.layers = plan.film.recorded();
   settings.crop = plan.film.crop;
+  PictureFilesAside aside(files.outputs, files.stats);
   const auto display = show_passes(plan.film, files.outputs.front(), settings);
   const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
   const ProgressBar bar(std::size_t(window.width) * window.height, settings.time_limit);
@@ -90,8 +91,7 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   bar.finish();
   check_not_empty(result);
   report.seconds_render = result.seconds;
-  write_outputs(files.outputs, {plan.exposure, plan.film, display.get()}, result, report);
-  if (!files.stats.empty()) write_statistics(files.stats, result, report);
+  aside.write({plan.exposure, plan.film, display.get()}, result, report);
   return result;
 }
 

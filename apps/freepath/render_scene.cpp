@@ -91,6 +91,7 @@ void render_scene_file(const ScenePlan& plan) {
   const SceneCamera& camera = *built.scene.camera;
   const PixelWindow window = pixel_window(report.settings.crop, camera.width(), camera.height());
   check_memory(window, film, report.settings.buckets);
+  PictureFilesAside aside(outputs, plan.stats);
   const auto display = show_passes(film, outputs.front(), report.settings);
 
   const StopOnInterrupt stop;
@@ -106,8 +107,7 @@ void render_scene_file(const ScenePlan& plan) {
          result.interrupted ? "interrupted" : "the time was up", result.seconds);
   }
   report.seconds_render = result.seconds;
-  write_outputs(outputs, {plan.exposure, film, display.get()}, result, report);
-  if (!plan.stats.empty()) write_statistics(plan.stats, result, report);
+  aside.write({plan.exposure, film, display.get()}, result, report);
   print_summary(outputs, result, report);
 }
 

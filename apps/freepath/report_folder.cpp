@@ -28,14 +28,19 @@ ReportFolder::ReportFolder(const std::string& path) : path_(path) {
   fs::create_directories(path, error);
   if (error) fail("-o {}: can't make the folder: {}", path, error.message());
   if (access(path.c_str(), W_OK | X_OK) != 0) fail("-o {}: the folder can't be written to", path);
+  const AsideFile trial(file("report.html"));
 }
 
 std::string ReportFolder::file(const std::string& name) const {
   return (fs::path(path_) / name).string();
 }
 
-void ReportFolder::write(const std::string& name, std::string_view contents) const {
-  write_file(file(name), contents);
+void ReportFolder::write(const std::string& name, std::string_view contents) {
+  attempts_.attempt([&] { write_file(file(name), contents); });
+}
+
+void ReportFolder::write(const std::string& name, const Image& image) {
+  attempts_.attempt([&] { write_exr(file(name), image); });
 }
 
 std::string command_line() { return remembered_command(); }

@@ -2,20 +2,45 @@
 
 #include <algorithm>
 #include <exception>
-#include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "apps/freepath/parse.h"
 #include "apps/freepath/report_folder.h"
 #include "freepath/base/error.h"
+#include "freepath/base/nearest_name.h"
+#include "freepath/base/thread_limit.h"
 #include "freepath/base/version.h"
 
 namespace freepath::program {
 namespace {
+
+/// "; did you mean 'name'?" where there is one that is near.
+std::string suggestion(const std::string& typed, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string_view nearest = nearest_name(typed, views);
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+}
+
+/// What is wrong with words of the command line that nothing takes, in their order.
+std::string unexpected_message(const CLI::App& command, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    if (!word.starts_with('-') || looks_numeric(word)) continue;
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    const std::string typed = word.substr(0, word.find('='));
+    return fmt::format("there is no option '{}'{}", typed, suggestion(typed, names));
+  }
+  return fmt::format("'{}' is not expected", words.front());
+}
 
 /// What is wrong with the command line, in the form of all errors.
 std::string usage_message(const CLI::App* program, const CLI::Error& error) {
@@ -23,7 +48,13 @@ std::string usage_message(const CLI::App* program, const CLI::Error& error) {
   const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
   std::string what = error.what();
   if (chosen.empty() && !program->remaining().empty()) {
-    what = fmt::format("there is no command '{}'", program->remaining().front());
+    const std::string& typed = program->remaining().front();
+    std::vector<std::string> names;
+    for (const CLI::App* known : program->get_subcommands({})) names.push_back(known->get_name());
+    what = fmt::format("there is no command '{}'{}", typed, suggestion(typed, names));
+  } else if (!chosen.empty() && !chosen.front()->remaining().empty() &&
+             error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+    what = unexpected_message(*chosen.front(), chosen.front()->remaining());
   }
   std::replace(what.begin(), what.end(), '\n', ' ');
   return fmt::format("{}; freepath{} --help explains", what, command);
@@ -70,18 +101,15 @@ int run_command(int argc, const char* const* argv) {
   add_trackers_command(program);
   refuse_empty_values(program);
   try {
+    const ThreadLimit limit;
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return end_parsing(program, error);
   } catch (const Error& error) {
     tell("freepath: error: {}\n", error.what());
     return 1;
-  } catch (const std::bad_alloc&) {
-    tell("freepath: error: out of memory\n");
-    return 1;
   } catch (const std::exception& error) {
-    tell("freepath: internal error: {}\n", error.what());
-    return 3;
+    return tell_unexpected(error);
   }
   return 0;
 }

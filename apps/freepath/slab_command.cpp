@@ -176,7 +176,7 @@ SlabSettings read_settings(const SlabOptions& options) {
   settings.mu0 = options.mu0;
   settings.diffuse = options.diffuse;
   settings.paths = parse_count(options.paths, "--paths", 1, 1e15);
-  settings.threads = options.threads;
+  settings.threads = settle_threads(options.threads);
   settings.batch = options.batch;
   settings.super_voxel = options.super_voxel;
   settings.bound_scale = static_cast<float>(options.bound_scale);

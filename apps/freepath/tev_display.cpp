@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 #include <netdb.h>
+#include <poll.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <bit>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@
 #include <utility>
 
 #include "apps/freepath/console.h"
+#include "apps/freepath/progress_bar.h"
 #include "freepath/base/error.h"
 
 namespace freepath::program {
@@ -33,8 +35,12 @@ constexpr char kUpdateImage = 6;  // with offsets and strides
 constexpr int kChannelsShown = 4;
 constexpr std::array<const char*, kChannelsShown> kNames{"R", "G", "B", "A"};
 
-/// A viewer that takes no data for so long is given up: rendering waits for it meanwhile.
-constexpr int kPatienceInSeconds = 5;
+/// Rendering never waits for a viewer. At its beginning, and for the last picture at its end, it
+/// has so long [s],
+constexpr double kPatience = 3, kPatienceAfterInterrupt = 0.5;
+/// and longer while it takes so much [bytes/s].
+constexpr double kSlowest = 1e6;
+constexpr int kMillisecondsBetweenLooks = 50;
 /// Rows are sent together up to so many values, so that the viewer can show them one by one.
 constexpr int kValuesPerPacket = 1 << 18;
 
@@ -65,6 +71,21 @@ class Packet {
 
  private:
   std::vector<char> bytes_;
+};
+
+/// How long a viewer is waited for.
+class Patience {
+ public:
+  /// @param taken bytes that it took so far
+  bool is_over(std::size_t taken) const {
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    if (StopOnInterrupt::requested() && seconds > kPatienceAfterInterrupt) return true;
+    return seconds > kPatience && static_cast<double>(taken) < kSlowest * seconds;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
 };
 
 [[noreturn]] void fail_address(const std::string& text) {
@@ -120,22 +141,31 @@ void TevDisplay::connect(const DisplayAddress& address) {
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> list(found, freeaddrinfo);
   int reason = 0;
   for (const addrinfo* entry = list.get(); entry != nullptr; entry = entry->ai_next) {
-    const int candidate =
-        socket(entry->ai_family, entry->ai_socktype | SOCK_CLOEXEC, entry->ai_protocol);
-    if (candidate < 0) {
-      reason = errno;
-      continue;
-    }
-    const timeval patience{kPatienceInSeconds, 0};  // of connecting, too
-    setsockopt(candidate, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience));
-    if (::connect(candidate, entry->ai_addr, entry->ai_addrlen) == 0) {
-      socket_ = candidate;
-      return;
-    }
-    reason = errno == EINPROGRESS ? ETIMEDOUT : errno;
-    close(candidate);
+    socket_ = socket(entry->ai_family, entry->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
+                     entry->ai_protocol);
+    if (socket_ >= 0 && ::connect(socket_, entry->ai_addr, entry->ai_addrlen) == 0) return;
+    reason = errno;
+    if (socket_ >= 0 && reason == EINPROGRESS) reason = wait_for_connection();
+    if (reason == 0) return;
+    if (socket_ >= 0) close(std::exchange(socket_, -1));
   }
   give_up(std::strerror(reason));
+}
+
+int TevDisplay::wait_for_connection() const {
+  for (const Patience patience; !patience.is_over(0);) {
+    if (!wait_until_writable()) continue;
+    int reason = 0;
+    socklen_t size = sizeof(reason);
+    getsockopt(socket_, SOL_SOCKET, SO_ERROR, &reason, &size);
+    return reason;
+  }
+  return ETIMEDOUT;
+}
+
+bool TevDisplay::wait_until_writable() const {
+  pollfd ready{socket_, POLLOUT, 0};
+  return poll(&ready, 1, kMillisecondsBetweenLooks) > 0;
 }
 
 void TevDisplay::give_up(const std::string& reason) {
@@ -146,16 +176,37 @@ void TevDisplay::give_up(const std::string& reason) {
   socket_ = -1;
 }
 
-void TevDisplay::show(const Image& picture) {
-  if (socket_ < 0) return;
+void TevDisplay::show(const Film& film) {
+  push();
+  if (socket_ >= 0 && waiting_.empty()) put(film.to_image({}));
+  push();
+}
+
+void TevDisplay::show_last(const Image& image) {
+  const Patience patience;
+  std::size_t taken = 0;
+  const auto drain = [&] {
+    while (socket_ >= 0 && !waiting_.empty()) {
+      taken += push();
+      if (waiting_.empty()) return;
+      if (patience.is_over(taken)) return give_up("it takes hardly any data");
+      wait_until_writable();
+    }
+  };
+  drain();
+  if (socket_ >= 0) put(image);
+  drain();
+}
+
+void TevDisplay::put(const Image& picture) {
   // The viewer is told numbers alone, which it takes for sRGB's.
   std::optional<Image> converted;
   if (picture.chromaticities) converted = in_srgb(picture);
   const Image& image = converted ? *converted : picture;
   if (!created_) create(image);
   const int rows = std::max(1, kValuesPerPacket / (image.width * kChannelsShown));
-  for (int first = 0; first < image.height && socket_ >= 0; first += rows) {
-    send_rows(image, first, std::min(rows, image.height - first));
+  for (int first = 0; first < image.height; first += rows) {
+    put_rows(image, first, std::min(rows, image.height - first));
   }
 }
 
@@ -166,11 +217,11 @@ void TevDisplay::create(const Image& image) {
   packet.put(int32_t{std::max(image.full_width, image.width)});
   packet.put(int32_t{std::max(image.full_height, image.height)});
   packet.put_names();
-  send(packet.finish());
+  put(packet.finish());
   created_ = true;
 }
 
-void TevDisplay::send_rows(const Image& image, int first, int count) {
+void TevDisplay::put_rows(const Image& image, int first, int count) {
   Packet packet(kUpdateImage);
   packet.put(char{0});  // stays where it is
   packet.put_text(name_);
@@ -188,19 +239,32 @@ void TevDisplay::send_rows(const Image& image, int first, int count) {
       }
     }
   }
-  send(packet.finish());
+  put(packet.finish());
 }
 
-void TevDisplay::send(const std::vector<char>& packet) {
-  for (std::size_t sent = 0; sent < packet.size();) {
-    if (socket_ < 0) return;
-    const ssize_t count = ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
+void TevDisplay::put(const std::vector<char>& packet) {
+  waiting_.insert(waiting_.end(), packet.begin(), packet.end());
+}
+
+std::size_t TevDisplay::push() {
+  const std::size_t before = sent_;
+  while (socket_ >= 0 && sent_ < waiting_.size()) {
+    const ssize_t count = ::send(socket_, waiting_.data() + sent_, waiting_.size() - sent_,
+                                 MSG_NOSIGNAL | MSG_DONTWAIT);
     if (count >= 0) {
-      sent += static_cast<std::size_t>(count);
+      sent_ += static_cast<std::size_t>(count);
+    } else if (errno == EAGAIN) {
+      break;
     } else if (errno != EINTR) {
-      give_up(errno == EAGAIN ? "it takes no data" : std::strerror(errno));
+      give_up(std::strerror(errno));
     }
   }
+  const std::size_t taken = sent_ - before;
+  if (sent_ == waiting_.size()) {
+    waiting_.clear();
+    sent_ = 0;
+  }
+  return taken;
 }
 
 }  // namespace freepath::program

@@ -1,6 +1,7 @@
 #pragma once
 /// @file A picture in a running tev (https://github.com/Tom94/tev), by its protocol over TCP.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -29,20 +30,30 @@ class TevDisplay {
   TevDisplay(const TevDisplay&) = delete;
   TevDisplay& operator=(const TevDisplay&) = delete;
 
-  /// Sends R, G, B and A as they are.
-  void show(const Film& film) { show(film.to_image({})); }
-  /// The same of a picture's first four channels.
-  void show(const Image& picture);
+  /// Sends R, G, B and A as they are, or as much as the viewer takes at once; what is left goes
+  /// with the next call. Never waits: while a picture is under way, those that come are left out.
+  void show(const Film& film);
+  /// The same of a picture's first four channels, which the viewer has a few seconds to take.
+  void show_last(const Image& image);
 
  private:
   void connect(const DisplayAddress& address);
+  /// @return 0, or the error's number
+  int wait_for_connection() const;
+  /// Waits for a moment at most.
+  bool wait_until_writable() const;
   void create(const Image& image);
-  void send_rows(const Image& image, int first, int count);
-  void send(const std::vector<char>& packet);
+  void put(const Image& image);
+  void put_rows(const Image& image, int first, int count);
+  void put(const std::vector<char>& packet);
+  /// @return bytes that the viewer took
+  std::size_t push();
   void give_up(const std::string& reason);
 
   std::string name_, place_;
   int socket_ = -1;
+  std::vector<char> waiting_;  ///< Of which the viewer has the first `sent_` bytes.
+  std::size_t sent_ = 0;
   bool created_ = false;
 };
 

@@ -9,6 +9,7 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "apps/freepath/picture_options.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 #include "freepath/transport/weight_growth.h"
@@ -24,12 +25,6 @@ Examples:
   freepath trackers --json
   freepath render cloud.vdb -o cloud.exr --tracker weighted-decomposition:control=0.5
   freepath render haze.vdb -o haze.exr --sigma-s 1,2,4 --tracker spectral --transmittance ratio)";
-
-/// `auto` stands for another tracker, and is in no registry.
-constexpr MethodInfo kAutoInfo = {
-    "auto", "chooses a tracker from the medium and says which and why",
-    "",     "as the tracker it chooses",
-    "",     {}};
 
 std::string values_of(const MethodOption& option) {
   if (!option.choices.empty()) return fmt::format("{}", fmt::join(option.choices, "|"));

@@ -11,6 +11,7 @@
 #include "freepath/base/input_file.h"
 #include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
+#include "freepath/io/image_aside.h"
 #include "freepath/io/image_codec.h"
 #include "freepath/io/image_plain.h"
 
@@ -68,6 +69,12 @@ void check_writable(const std::string& path) {
 }
 
 void write_exr(const std::string& path, const Image& image, ExrPrecision precision) {
+  AsideFile file(path);
+  write_exr(file, image, precision);
+}
+
+void write_exr(AsideFile& file, const Image& image, ExrPrecision precision) {
+  const std::string& path = file.path();
   check_consistent(path, image);
   if (image_format(path) != ImageFormat::kExr) fail("{}: an EXR file must end in .exr", path);
   const bool half = precision == ExrPrecision::kHalf;
@@ -77,7 +84,6 @@ void write_exr(const std::string& path, const Image& image, ExrPrecision precisi
     clamped = image.values;
     for (float& value : clamped) value = std::clamp(value, -kLargestHalf, kLargestHalf);
   }
-  const AsideFile file(path);
   const std::string reason = image_codec().write_exr(
       file.name(), image, half ? clamped.data() : image.values.data(), precision);
   if (!reason.empty()) file.give_up(reason);
@@ -95,10 +101,27 @@ std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::
 }
 
 void write_png(const std::string& path, const Image& image, double exposure) {
+  AsideFile file(path);
+  write_png(file, image, exposure);
+}
+
+void write_png(AsideFile& file, const Image& image, double exposure) {
+  const std::string& path = file.path();
   if (image_format(path) != ImageFormat::kPng) fail("{}: a PNG file must end in .png", path);
   // The PNG writer doesn't notice a full disk, hence the detour.
   const std::vector<uint8_t> bytes = encode_png(image, exposure, path);
-  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.replace_target();
+}
+
+bool is_exr(const std::string& path) {
+  return !is_plain_image(path) && image_format(path) == ImageFormat::kExr;
+}
+
+void write_image(AsideFile& file, const Image& image, double exposure) {
+  if (is_plain_image(file.path())) return write_plain_image(file, image, exposure);
+  if (is_exr(file.path())) return write_exr(file, image);
+  write_png(file, image, exposure);
 }
 
 }  // namespace freepath

@@ -15,8 +15,10 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "freepath/base/memory_budget.h"
+#include "freepath/base/thread_limit.h"
 #include "freepath/base/version.h"
 
 namespace freepath {
@@ -65,11 +67,21 @@ void set_metadata(OIIO::ImageSpec& spec, const Image& image) {
   }
 }
 
+/// Keeps the libraries of formats from starting threads where the system grants none: they would
+/// fail for it.
+void settle_threads() {
+  const auto usual = static_cast<int>(std::thread::hardware_concurrency());
+  if (granted_threads(2 * usual + 2) > 2 * usual + 1) return;  // both of them keep some
+  OIIO::attribute("threads", 1);
+  OIIO::attribute("exr_threads", -1);
+}
+
 /// Writes with OpenImageIO: into the file of that name, or into a buffer if there is one.
 /// @return the reason why it could not; empty: it is written
 std::string encode(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
                    const OIIO::TypeDesc& type, const void* pixels,
                    OIIO::Filesystem::IOProxy* buffer = nullptr) {
+  settle_threads();
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) return trimmed(OIIO::geterror());
   if (buffer != nullptr && !output->set_ioproxy(buffer)) return trimmed(output->geterror());
@@ -150,6 +162,7 @@ void set_chromaticities(OIIO::ImageSpec& spec, const Image& image) {
 
 std::string read_stored(const std::string& path, uint64_t stored, Image& image, bool& srgb,
                         int& alpha) {
+  settle_threads();
   OIIO::ImageSpec wish;
   wish.attribute("oiio:UnassociatedAlpha", 1);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wish);

@@ -14,7 +14,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/vector.h"
-#include "freepath/io/aside_file.h"
+#include "freepath/io/image_aside.h"
 
 namespace freepath {
 namespace {
@@ -113,11 +113,18 @@ bool is_plain_image(const std::string& path) {
 }
 
 void write_plain_image(const std::string& path, const Image& image, double exposure) {
+  AsideFile file(path);
+  write_plain_image(file, image, exposure);
+}
+
+void write_plain_image(AsideFile& file, const Image& image, double exposure) {
+  const std::string& path = file.path();
   const std::vector<uint8_t> bytes =
       extension_of(path) == ".pfm"
           ? encode_pfm(image, path)
           : encode_qoi(image.width, image.height, srgb_pixels(image, exposure, path));
-  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  file.replace_target();
 }
 
 std::vector<uint8_t> srgb_pixels(const Image& image, double exposure, const std::string& name) {

@@ -1,7 +1,5 @@
 #include "freepath/io/volume_write.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
@@ -61,28 +59,6 @@ FloatGrid::Ptr grid_of(const Field& field, const VdbWriteOptions& options) {
   return grid;
 }
 
-/// A name beside the file's that ends with it, so that both are on one file system.
-std::filesystem::path name_beside(const std::filesystem::path& path) {
-  return path.parent_path() /
-         fmt::format(".{}.{}.part", path.filename().string(), static_cast<long>(getpid()));
-}
-
-/// Removes a file that was not finished.
-class PartialFile {
- public:
-  explicit PartialFile(std::filesystem::path path) : path_(std::move(path)) {}
-  ~PartialFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  PartialFile(const PartialFile&) = delete;
-  PartialFile& operator=(const PartialFile&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Puts a name of the contents where OpenVDB writes a random one, so that the same fields give the
 /// same bytes.
 void name_by_contents(const std::filesystem::path& path) {
@@ -115,37 +91,33 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
   file.close();
   name_by_contents(path);
   // OpenVDB doesn't look whether the last bytes reached the disk; a full one cuts the file short.
-  io::read_vdb_directory(io::VolumeFile(path));
+  try {
+    io::read_vdb_directory(io::VolumeFile(path));
+  } catch (const Error&) {
+    fail("it came out cut short; is the disk full, or the size of files limited?");
+  }
 }
 
 }  // namespace
 
-void check_vdb_place(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) {
-    fail("{}: is a directory; name the file to write", path.string());
-  }
-  const std::filesystem::path folder = path.parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-    fail("{}: can't be written: there is no folder {}", path.string(), folder.string());
-  }
-}
-
 void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
                const VdbWriteOptions& options) {
-  if (fields.empty()) fail("{}: there is no field to write", path.string());
-  check_vdb_place(path);
+  AsideFile file(path.string());
+  write_vdb(file, fields, options);
+}
+
+void write_vdb(AsideFile& file, std::span<const Field* const> fields,
+               const VdbWriteOptions& options) {
+  if (fields.empty()) fail("{}: there is no field to write", file.path());
   openvdb::initialize();
-  const PartialFile partial(name_beside(path));
   try {
     openvdb::GridCPtrVec grids;
     for (const Field* field : fields) grids.push_back(grid_of(*field, options));
-    write_grids(partial.path(), grids);
+    write_grids(file.name(), grids);
   } catch (const std::exception& error) {
-    fail("{}: can't be written: {}", path.string(), error.what());
+    file.give_up(error.what());
   }
-  std::error_code status;
-  std::filesystem::rename(partial.path(), path, status);
-  if (status) fail("{}: can't be written: {}", path.string(), status.message());
+  file.replace_target();
 }
 
 }  // namespace freepath

@@ -58,6 +58,17 @@ TEST_F(BadInputTest, TheCommandLineItself) {
   expect_render_error("--seed 1 --seed 2", {"--seed"});
 }
 
+TEST_F(BadInputTest, NamesThatAreNearAreSuggested) {
+  expect_error("rendr ball.vdb", {"there is no command 'rendr'", "did you mean 'render'"});
+  expect_render_error("--sp 4", {"there is no option '--sp'", "did you mean '--spp'"});
+  expect_render_error("--albdo=0.5", {"'--albdo'", "did you mean '--albedo'"});
+  expect_error("slab --tua 1", {"'--tua'", "did you mean '--tau'"});
+  expect_render_error("--quux 1 2", {"there is no option '--quux'"});
+  expect_error("trackers extra", {"'extra' is not expected"});
+  expect_render_error("--tracker autto", {"autto", "auto"});
+  expect_render_error("--tracker nothing-like-it", {"auto"});
+}
+
 TEST_F(BadInputTest, NumbersThatAreNone) {
   const auto try_values = [&](const std::vector<std::string>& options,
                               const std::vector<std::string>& values) {

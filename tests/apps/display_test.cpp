@@ -24,7 +24,8 @@ namespace {
 class Viewer {
  public:
   /// @param bytes after which it breaks the connection; 0: never
-  explicit Viewer(std::size_t bytes = 0) {
+  /// @param is_slow whether it takes a byte now and then
+  explicit Viewer(std::size_t bytes = 0, bool is_slow = false) {
     listener_ = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -34,12 +35,14 @@ class Viewer {
     EXPECT_EQ(listen(listener_, 1), 0);
     getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
     port_ = ntohs(address.sin_port);
-    thread_ = std::thread([this, bytes] { take(bytes); });
+    thread_ = std::thread([this, bytes, is_slow] { take(bytes, is_slow); });
   }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
   ~Viewer() { finish(); }
 
+  /// Takes nothing more.
+  void give_up() { given_up_ = true; }
   std::string port() const { return std::to_string(port_); }
   /// Waits for the end of the connection.
   const std::vector<char>& finish() {
@@ -51,14 +54,15 @@ class Viewer {
   }
 
  private:
-  void take(std::size_t bytes) {
+  void take(std::size_t bytes, bool is_slow) {
     const int connection = accept(listener_, nullptr, nullptr);
     accepted_ = true;
     if (connection < 0) return;
     std::array<char, 4096> buffer{};
     while (true) {
-      const ssize_t count = read(connection, buffer.data(), buffer.size());
-      if (count <= 0) break;
+      if (is_slow) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      const ssize_t count = read(connection, buffer.data(), is_slow ? 1 : buffer.size());
+      if (count <= 0 || given_up_) break;
       received_.insert(received_.end(), buffer.data(), buffer.data() + count);
       if (bytes > 0 && received_.size() >= bytes) {
         const linger at_once{1, 0};
@@ -70,7 +74,7 @@ class Viewer {
   }
 
   int listener_ = -1;
-  std::atomic<bool> accepted_ = false;
+  std::atomic<bool> accepted_ = false, given_up_ = false;
   uint16_t port_ = 0;
   std::thread thread_;
   std::vector<char> received_;
@@ -210,6 +214,20 @@ TEST_F(DisplayTest, ThatGoesAwayIsWarnedOfOnce) {
   ASSERT_NE(first, std::string::npos) << outcome;
   EXPECT_EQ(outcome.messages.find("warning: --display", first + 1), std::string::npos) << outcome;
   EXPECT_EQ(read_image(path("picture.exr")).width, 640);
+}
+
+// It would take a day to read the picture, and does not end by itself.
+TEST_F(DisplayTest, ThatReadsSlowlyIsNotWaitedFor) {
+  Viewer viewer(1'000'000, true);
+  const Outcome outcome = start(
+      "render ball.vdb --size 1280x960 --spp 3 -o picture.exr --layers none --display "
+      "127.0.0.1:" +
+      viewer.port());
+  viewer.give_up();
+  EXPECT_EQ(outcome.status, 0) << outcome;
+  EXPECT_NE(outcome.messages.find("warning: --display: lost the viewer"), std::string::npos)
+      << outcome;
+  EXPECT_EQ(read_image(path("picture.exr")).width, 1280);
 }
 
 TEST_F(DisplayTest, RefusesWhatIsNoAddress) {

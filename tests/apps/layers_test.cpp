@@ -229,8 +229,49 @@ TEST_F(LayersTest, SaysHowToGetADenoiserBeforeRendering) {
                            "libOpenImageDenoise.so.0", "libOpenImageDenoise.so"}) {
     if (dlopen(name, RTLD_NOW) != nullptr) GTEST_SKIP() << name << " is installed";
   }
-  expect_refused("ball.vdb --size 4096x4096 --denoise", "libopenimagedenoise1");
-  expect_refused("fog.pbrt --denoise", "libopenimagedenoise1");
+  for (const char* input : {"ball.vdb --size 4096x4096", "fog.pbrt"}) {
+    expect_refused(std::string(input) + " --denoise", "pip install --no-deps pyoidn");
+  }
+}
+
+TEST_F(LayersTest, FindsADenoiserWhereTheEnvironmentSays) {
+  namespace fs = std::filesystem;
+  const std::string library = "libOpenImageDenoise.so.2";
+  const std::string inside = "env/lib/python3.11/site-packages/pyoidn/oidn/lib/";
+  fs::create_directories(path(inside));
+  fs::copy(fs::path(FREEPATH_FAKE_DENOISER) / library, path(inside + library));
+  const std::string render =
+      " freepath render ball.vdb --size 4x4 --spp 1 --denoise -o picture.exr";
+  for (const std::string place :
+       {"FREEPATH_OIDN=env", "FREEPATH_OIDN=$PWD/env", "VIRTUAL_ENV=$PWD/env"}) {
+    EXPECT_EQ(shell(place + render).status, 0) << place;
+  }
+  EXPECT_EQ(shell("FREEPATH_OIDN=" + inside + library + render).status, 0);
+  EXPECT_EQ(shell("FREEPATH_OIDN=" + inside + render).status, 0);
+  for (const char* wrong : {"none", "env/lib", "ball.vdb"}) {
+    const Outcome outcome = shell(std::string("FREEPATH_OIDN=") + wrong + render);
+    EXPECT_EQ(outcome.status, 1) << wrong;
+    EXPECT_NE(outcome.messages.find(std::string("FREEPATH_OIDN is ") + wrong), std::string::npos)
+        << outcome;
+  }
+}
+
+// With the real library, where the environment names one.
+TEST_F(LayersTest, DenoisesByTheRealLibrary) {
+  if (getenv("FREEPATH_OIDN") == nullptr) {
+    GTEST_SKIP() << "FREEPATH_OIDN names no Open Image Denoise";
+  }
+  const auto noise = [&](const char* options) {
+    const Outcome outcome =
+        start(std::string("render ball.vdb --size 64x64 --spp 4 -o picture.exr ") + options);
+    EXPECT_EQ(outcome.status, 0) << outcome;
+    const Outcome reference = start("render ball.vdb --size 64x64 --spp 512 --seed 1 -o many.exr");
+    EXPECT_EQ(reference.status, 0) << reference;
+    const Outcome difference = start("diff picture.exr many.exr --json");
+    return nlohmann::json::parse(difference.output)["mse"].get<double>();
+  };
+  const double noisy = noise("");
+  EXPECT_LT(noise("--denoise"), 0.5 * noisy);
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+#pragma once
+/// @file Images written to files that are open already.
+
+#include <string>
+
+#include "freepath/io/aside_file.h"
+#include "freepath/io/image.h"
+
+namespace freepath {
+
+/// Writes an EXR file as the function of that name for paths does.
+void write_exr(AsideFile& file, const Image& image, ExrPrecision precision = ExrPrecision::kFloat);
+
+/// Writes a PNG file as the function of that name for paths does.
+void write_png(AsideFile& file, const Image& image, double exposure = 0);
+
+/// Writes a PFM or QOI file as the function of that name for paths does.
+void write_plain_image(AsideFile& file, const Image& image, double exposure = 0);
+
+/// Writes an image in the format of the file's extension: all channels to an EXR file, else the
+/// colour.
+/// @param exposure of formats of 8 bits [stops]
+/// @throws Error that names the file
+void write_image(AsideFile& file, const Image& image, double exposure);
+
+/// Whether the extension is that of an EXR file, which holds all channels.
+bool is_exr(const std::string& path);
+
+}  // namespace freepath
