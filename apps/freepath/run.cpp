@@ -48,7 +48,7 @@ std::string usage_message(const CLI::App* program, const CLI::Error& error) {
   const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
   std::string what = error.what();
   if (chosen.empty() && !program->remaining().empty()) {
-    const std::string& typed = program->remaining().front();
+    const std::string typed = program->remaining().front();
     std::vector<std::string> names;
     for (const CLI::App* known : program->get_subcommands({})) names.push_back(known->get_name());
     what = fmt::format("there is no command '{}'{}", typed, suggestion(typed, names));

@@ -156,7 +156,7 @@ TEST_F(ImageTest, TargetsThatCannotBeWrittenAreNamedBeforeRendering) {
   expect_message([&] { check_writable(path("a.gif")); }, "use .exr, .png, .pfm or .qoi");
   expect_message([&] { check_writable(path("a")); }, "use .exr, .png, .pfm or .qoi");
   fs::create_directory(path("folder.exr"));
-  expect_message([&] { check_writable(path("folder.exr")); }, "not a file");
+  expect_message([&] { check_writable(path("folder.exr")); }, "is a directory");
   write_exr(path("a.exr"), numbered_image({"Y"}));
   fs::permissions(path("a.exr"), fs::perms::owner_read);
   expect_message([&] { check_writable(path("a.exr")); }, "read-only");

@@ -20,23 +20,23 @@
 namespace freepath::testing {
 namespace {
 
-constexpr int kEdge = 8;               // of a cube [voxels], whose edge is 1 in the world
-constexpr double kTemperature = 1900;  // [K]
+constexpr int kCubeVoxels = 8;               // of a cube [voxels], whose edge is 1 in the world
+constexpr double kHotKelvins = 1900;  // [K]
 
 std::shared_ptr<Field> glowing_cube(float value) {
   Matrix4d index_to_world;
-  index_to_world.setScale(Vec3d(1.0 / kEdge));
+  index_to_world.setScale(Vec3d(1.0 / kCubeVoxels));
   return make_field(
-      Vec3i(0), Vec3i(kEdge - 1), [value](const Vec3i&) { return value; }, index_to_world);
+      Vec3i(0), Vec3i(kCubeVoxels - 1), [value](const Vec3i&) { return value; }, index_to_world);
 }
 
 /// The picture's mean of a cube of optical thickness 1 that emits and scatters nothing, seen face
 /// on from far away.
-std::array<RunningStatistics, 3> seen_through(OpticalProperties optics, const char* tracker) {
+std::array<RunningStatistics, 3> seen_face_on(OpticalProperties optics, const char* tracker) {
   std::vector<Volume> volumes(1);
   volumes[0].densities.push_back(*glowing_cube(1));
   // The field holds degrees of another scale.
-  volumes[0].temperature = glowing_cube(static_cast<float>((kTemperature - 300) / 2));
+  volumes[0].temperature = glowing_cube(static_cast<float>((kHotKelvins - 300) / 2));
   optics.albedo = Spectrum(0.0F);
   optics.temperature_scale = 2;
   optics.temperature_offset = -150;
@@ -63,11 +63,11 @@ std::array<RunningStatistics, 3> seen_through(OpticalProperties optics, const ch
 }
 
 TEST(VolumeTemperature, AHotCubeIsABlackBodySeenThroughItsOwnExtinction) {
-  const BlackbodySpectrum body(kTemperature, BlackbodyScale::kPeak);
+  const BlackbodySpectrum body(kHotKelvins, BlackbodyScale::kPeak);
   const Vec3d radiance =
       rgb_color_space("srgb").from_xyz(observe(body)) * kLuminousIntegral * (1 - std::exp(-1.0));
   for (const char* tracker : {"delta", "spectral", "decomposition"}) {
-    const auto means = seen_through({}, tracker);
+    const auto means = seen_face_on({}, tracker);
     for (int c = 0; c < 3; ++c) {
       EXPECT_TRUE(check_mean(tracker, means[c].mean(), means[c].standard_error(), means[c].count(),
                              radiance[c], {4, 0, 0.003}));
@@ -78,8 +78,8 @@ TEST(VolumeTemperature, AHotCubeIsABlackBodySeenThroughItsOwnExtinction) {
 TEST(VolumeTemperature, TheEmittedRadianceIsMultiplied) {
   OpticalProperties optics;
   optics.emission = Spectrum(0.5F, 0.0F, 2.0F);
-  const auto plain = seen_through({}, "delta");
-  const auto scaled = seen_through(optics, "delta");
+  const auto plain = seen_face_on({}, "delta");
+  const auto scaled = seen_face_on(optics, "delta");
   EXPECT_NEAR(scaled[0].mean() / plain[0].mean(), 0.5, 1e-5);
   EXPECT_EQ(scaled[1].mean(), 0);
   EXPECT_NEAR(scaled[2].mean() / plain[2].mean(), 2, 1e-5);
