@@ -70,9 +70,10 @@ class QoiWriter {
   }
 
   void add_difference(const QoiPixel& pixel) {
-    std::array<int, 3> change{};  // modulo 256
+    std::array<int, 3> change{};  // modulo 256, from -128 to 127
     for (int c = 0; c < 3; ++c) {
-      change[c] = static_cast<int8_t>(static_cast<uint8_t>(pixel[c] - last_[c]));
+      const int rise = (int{pixel[c]} - int{last_[c]}) & 0xFF;
+      change[c] = rise < 128 ? rise : rise - 256;
     }
     const auto [r, g, b] = change;
     const auto fits = [](int value, int smallest, int largest) {

@@ -60,7 +60,8 @@ double BoxTree::blocks_of(const PlaceBox& box) {
   for (int axis = 0; axis < 3; ++axis) {
     // Two voxels on either side, and as many blocks as that can touch.
     const int64_t voxels = int64_t{box.end[axis]} - box.begin[axis] + 4;
-    blocks *= static_cast<double>((voxels + 2 * kBlock - 2) / kBlock);
+    const int64_t touched = (voxels + 2 * int64_t{kBlock} - 2) / kBlock;
+    blocks *= static_cast<double>(touched);
   }
   return blocks;
 }

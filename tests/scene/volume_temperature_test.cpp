@@ -20,14 +20,16 @@
 namespace freepath::testing {
 namespace {
 
-constexpr int kCubeVoxels = 8;               // of a cube [voxels], whose edge is 1 in the world
+constexpr int kCubeVoxels = 8;        // of a cube [voxels], whose edge is 1 in the world
 constexpr double kHotKelvins = 1900;  // [K]
 
-std::shared_ptr<Field> glowing_cube(float value) {
+/// @param margin around the cube [voxels]: temperatures fade over half a voxel at their border
+std::shared_ptr<Field> glowing_cube(float value, int margin = 0) {
   Matrix4d index_to_world;
   index_to_world.setScale(Vec3d(1.0 / kCubeVoxels));
   return make_field(
-      Vec3i(0), Vec3i(kCubeVoxels - 1), [value](const Vec3i&) { return value; }, index_to_world);
+      Vec3i(-margin), Vec3i(kCubeVoxels - 1 + margin), [value](const Vec3i&) { return value; },
+      index_to_world);
 }
 
 /// The picture's mean of a cube of optical thickness 1 that emits and scatters nothing, seen face
@@ -36,7 +38,7 @@ std::array<RunningStatistics, 3> seen_face_on(OpticalProperties optics, const ch
   std::vector<Volume> volumes(1);
   volumes[0].densities.push_back(*glowing_cube(1));
   // The field holds degrees of another scale.
-  volumes[0].temperature = glowing_cube(static_cast<float>((kHotKelvins - 300) / 2));
+  volumes[0].temperature = glowing_cube(static_cast<float>((kHotKelvins - 300) / 2), 8);
   optics.albedo = Spectrum(0.0F);
   optics.temperature_scale = 2;
   optics.temperature_offset = -150;
@@ -70,7 +72,8 @@ TEST(VolumeTemperature, AHotCubeIsABlackBodySeenThroughItsOwnExtinction) {
     const auto means = seen_face_on({}, tracker);
     for (int c = 0; c < 3; ++c) {
       EXPECT_TRUE(check_mean(tracker, means[c].mean(), means[c].standard_error(), means[c].count(),
-                             radiance[c], {4, 0, 0.003}));
+                             radiance[c],
+                             c < 2 ? MeanTolerance{4, 0, 0.003} : MeanTolerance{4, 2e-3}));
     }
   }
 }
