@@ -14,23 +14,23 @@ namespace freepath {
 class StopScope {
  public:
   /// @param stop asked now and then; once it is true the walks end. Empty: never.
-  explicit StopScope(const std::function<bool()>& stop) : stop_(stop), outer_(current_) {
-    current_ = this;
+  explicit StopScope(const std::function<bool()>& stop) : stop_(stop), outer_(innermost) {
+    innermost = this;
   }
   StopScope(const StopScope&) = delete;
   StopScope& operator=(const StopScope&) = delete;
-  ~StopScope() { current_ = outer_; }
+  ~StopScope() { innermost = outer_; }
 
   /// Whether walks were told to stop.
   bool stopped() const { return stopped_; }
 
   /// Whether the walk at work was told to stop before; asks nobody.
-  static bool has_stopped() { return current_ != nullptr && current_->stopped_; }
+  static bool has_stopped() { return innermost != nullptr && innermost->stopped_; }
   /// Whether the walk at work has to stop.
   static bool ask() {
-    if (current_ == nullptr || !current_->stop_) return false;
-    current_->stopped_ = current_->stopped_ || current_->stop_();
-    return current_->stopped_;
+    if (innermost == nullptr || !innermost->stop_) return false;
+    innermost->stopped_ = innermost->stopped_ || innermost->stop_();
+    return innermost->stopped_;
   }
 
  private:
@@ -38,7 +38,7 @@ class StopScope {
   StopScope* const outer_;
   bool stopped_ = false;
 
-  inline static thread_local StopScope* current_ = nullptr;
+  inline static thread_local StopScope* innermost = nullptr;
 };
 
 }  // namespace freepath
