@@ -30,6 +30,8 @@ fs::path resolved(const std::string& path) {
   fs::path place = path;
   for (int links = 0; fs::is_symlink(fs::symlink_status(place, error)); ++links) {
     if (links == kMostLinks) fail("{}: a link that leads to itself; choose another name", path);
+    // What /dev/stdout leads to is open elsewhere, and would not see that it is replaced.
+    if (place.string().starts_with("/proc/")) fail("{}: a stream, not a file; name a file", path);
     place = place.parent_path() / fs::read_symlink(place, error);
     if (error) fail("{}: can't follow the link: {}", path, error.message());
   }

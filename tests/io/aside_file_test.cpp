@@ -166,6 +166,7 @@ TEST(AsideFile, PlacesWhereNoneCanStandAreRefusedAtOnce) {
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   expect_refused(folder / "pipe", "not a file");
   expect_refused("/dev/full", "not a file");
+  expect_refused("/dev/stdout", "not a file");
   std::ofstream(folder / "kept") << "text";
   fs::permissions(folder / "kept", fs::perms::owner_read);
   expect_refused(folder / "kept", "read-only");
