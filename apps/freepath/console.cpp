@@ -65,7 +65,7 @@ void occupy(int stream) {
   (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-/// What the libraries can't go on with, as a line and a status instead of an abort.
+/// Turns what the libraries can't go on with into a line and a status instead of an abort.
 [[noreturn]] void end_by_exception() {
   int status = kUnexpected;
   try {

@@ -41,7 +41,7 @@ struct VolumePlan {
 /// @throws Error naming the option
 std::vector<VolumePlan> plan_volumes(const VolumeOptions& options);
 
-/// What to do about voxels and pixels that are NaN or infinite.
+/// Policy for voxels and pixels that are NaN or infinite.
 /// @throws Error naming the option
 InvalidPolicy read_invalid(const VolumeOptions& options);
 

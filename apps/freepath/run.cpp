@@ -28,7 +28,7 @@ std::string suggestion(const std::string& typed, const std::vector<std::string>&
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
-/// What is wrong with words of the command line that nothing takes, in their order.
+/// Message about words of the command line that nothing takes, in their order.
 std::string unexpected_message(const CLI::App& command, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (!word.starts_with('-') || looks_numeric(word)) continue;

@@ -187,7 +187,7 @@ SlabSettings read_settings(const SlabOptions& options) {
   return settings;
 }
 
-/// What is not reflected or transmitted.
+/// Absorptance: the light that is neither reflected nor transmitted.
 SlabEstimate absorptance_of(const SlabResult& result) {
   return {1 - result.total.mean, result.total.error, {}};
 }

@@ -73,7 +73,7 @@ class Packet {
   std::vector<char> bytes_;
 };
 
-/// How long a viewer is waited for.
+/// Patience with a viewer: the time that it is waited for.
 class Patience {
  public:
   /// @param taken bytes that it took so far

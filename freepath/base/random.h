@@ -48,7 +48,7 @@ constexpr float uniform_from_bits(uint32_t bits) {
 /// The largest float below 1, at which what rounding would lift to 1 is held.
 inline constexpr float kBelowOne = 1.0F - 0x1p-24F;
 
-/// Of the 31 bits that a number is made of, so many have to count for it to have all its digits.
+/// Bits of the 31 of a number that have to count for it to have all its digits.
 /// Where they don't (one number in 256), a second word gives the digits that follow.
 inline constexpr uint32_t kFewDigits = 1U << 23;
 
