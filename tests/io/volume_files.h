@@ -41,13 +41,13 @@ enum class Codec { kNone, kZip, kBlosc };
 
 /// A voxel of a test grid.
 struct Voxel {
-  Vec3i place;
+  Vec3i place = Vec3i(0, 0, 0);
   double value = 0;
 };
 
 /// A constant cube of a test grid: size is 8, 128 or 4096.
 struct TestTile {
-  Vec3i origin;
+  Vec3i origin = Vec3i(0, 0, 0);
   int size = 8;
   double value = 0;
 };

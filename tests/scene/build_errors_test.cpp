@@ -9,6 +9,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/scene/build/scene_builder.h"
+#include "tests/io/volume_oddities.h"
 #include "tests/scene/scenes_in_memory.h"
 #include "tests/scene/twin_scenes.h"
 
@@ -213,6 +214,25 @@ TEST(BuildErrors, OfFilesThatAreSomethingElse) {
       "2:1", "volume file");
   expect_error("WorldBegin\nShape \"plymesh\" \"string filename\" \"" + name + R"(")", "2:17",
                "PLY");
+}
+
+TEST(BuildErrors, InvalidVoxelsAreZeroWithAWarningOrRefusedAndEmptyGridsAreMedia) {
+  const TemporaryFile file("odd.vdb");
+  const std::string text =
+      "WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"openvdb\" \"string filename\" \"" +
+      file.path().string() + R"(")";
+  const auto warning_of = [&](InvalidPolicy invalid) {
+    Diagnostics diagnostics;
+    build_scene(parse(text, diagnostics), diagnostics, {.invalid = invalid});
+    return diagnostics.warnings().empty() ? std::string() : diagnostics.warnings().front();
+  };
+  testing_volumes::write_vdb_inactive(file.path(), 0, true);
+  const std::string warning = warning_of(InvalidPolicy::kZero);
+  EXPECT_NE(warning.find("2:1"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("(-8, 0, 7) is NaN"), std::string::npos) << warning;
+  EXPECT_THROW(warning_of(InvalidPolicy::kError), Error);
+  testing_volumes::write_vdb_empty(file.path());
+  EXPECT_NE(warning_of(InvalidPolicy::kError).find("it is empty"), std::string::npos);
 }
 
 /// A scene of which one thing is said, but that is rendered.
