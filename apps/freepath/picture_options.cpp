@@ -37,7 +37,7 @@ void add_light_options(CLI::App& command, PictureOptions& o) {
   command
       .add_option("--sun", o.sun,
                   "ELEVATION,AZIMUTH of the sun's disc [degrees, azimuth clockwise from north], "
-                  "or none [40,250 under a sky, else none]")
+                  "or none [38,255 under a sky, else none]")
       ->group("Light");
   command.add_option("--turbidity", o.turbidity, "Haze of sky and sun, 2 to 10")
       ->capture_default_str()

@@ -68,6 +68,7 @@ struct RenderOptions {
   double time_limit = 0;
   std::string tracker = "delta", transmittance = "ratio", interpolation = "stochastic";
   double exposure = 0;
+  std::string view;
 };
 
 RenderSettings read_settings(const RenderOptions& options) {
@@ -82,6 +83,16 @@ RenderSettings read_settings(const RenderOptions& options) {
   return settings;
 }
 
+constexpr std::array kViewTransforms{Choice<ViewTransform>{"standard", ViewTransform::kStandard},
+                                     Choice<ViewTransform>{"neutral", ViewTransform::kNeutral}};
+
+/// @param usual the view transform where none is given
+PictureLook read_look(const RenderOptions& options, ViewTransform usual) {
+  const ViewTransform view =
+      options.view.empty() ? usual : parse_choice(options.view, "--view", kViewTransforms);
+  return {.exposure = options.exposure, .view = view};
+}
+
 void run_scene(const CLI::App& command, const RenderOptions& options) {
   check_scene_options(command, options.picture);
   const auto given = [&](const char* name) { return command.count(name) > 0; };
@@ -90,7 +101,7 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
   plan.outputs = options.outputs;
   plan.stats = options.stats;
   plan.settings = read_settings(options);
-  plan.exposure = options.exposure;
+  plan.look = read_look(options, ViewTransform::kStandard);
   plan.film = read_film_options(options.film);
   plan.invalid = read_invalid(options.picture.volumes);
   if (given("--size")) plan.size = parse_size(options.picture.size, "--size");
@@ -125,7 +136,7 @@ void run(const CLI::App& command, const RenderOptions& options) {
                         .up = up,
                         .lights = make_lights(read_lights(options.picture), up, &warnings),
                         .super_voxel = options.picture.super_voxel,
-                        .exposure = options.exposure};
+                        .look = read_look(options, ViewTransform::kNeutral)};
   for (const std::string& warning : warnings)
     fmt::print(stderr, "freepath: warning: {}\n", warning);
   if (options.frames.empty()) {
@@ -151,9 +162,15 @@ void add_output_options(CLI::App& command, RenderOptions& o) {
                   "second; with --spp, whichever ends first")
       ->check(kFiniteNumber & CLI::PositiveNumber)
       ->group("Picture");
-  command.add_option("--exposure", o.exposure, "Exposure of a .png [stops]")
+  command.add_option("--exposure", o.exposure, "Exposure of a .png or .qoi [stops]")
       ->capture_default_str()
       ->check(kFiniteNumber)
+      ->group("Picture");
+  command
+      .add_option(
+          "--view", o.view,
+          "View transform of a .png: standard, which clips, or neutral, which keeps hues and "
+          "rolls bright light off to white [volumes: neutral, scenes: standard]")
       ->group("Picture");
   command.add_option("--stats", o.stats, "Write statistics to a JSON file")->group("Picture");
   command

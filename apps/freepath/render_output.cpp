@@ -170,7 +170,7 @@ void PictureFilesAside::write(const OutputPlan& plan, const RenderResult& result
   add_metadata(image, result, report);
   bool is_kept = false;
   for (AsideFile& file : pictures_) {
-    const bool is_written = attempts.attempt([&] { write_image(file, image, plan.exposure); });
+    const bool is_written = attempts.attempt([&] { write_image(file, image, plan.look); });
     is_kept |= is_written && is_exr(file.path());
   }
   const bool is_lost = !is_kept && attempts.failed();

@@ -43,7 +43,7 @@ struct RenderReport {
 
 /// What is made of a film.
 struct OutputPlan {
-  double exposure = 0;  ///< Of a .png [stops].
+  PictureLook look;  ///< Of a .png or .qoi.
   const FilmPlan& film;
   TevDisplay* display = nullptr;  ///< Shows the picture as it is written; may be null.
 };

@@ -91,7 +91,7 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   bar.finish();
   check_not_empty(result);
   report.seconds_render = result.seconds;
-  aside.write({plan.exposure, plan.film, display.get()}, result, report);
+  aside.write({plan.look, plan.film, display.get()}, result, report);
   return result;
 }
 

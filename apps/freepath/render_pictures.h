@@ -19,7 +19,7 @@ struct RenderPlan {
   UpAxis up = UpAxis::kY;
   Lights lights;
   int super_voxel = 0;
-  double exposure = 0;
+  PictureLook look;
 };
 
 /// Renders and writes a picture; Ctrl-C while it is rendered ends it early.

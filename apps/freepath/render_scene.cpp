@@ -107,7 +107,7 @@ void render_scene_file(const ScenePlan& plan) {
          result.interrupted ? "interrupted" : "the time was up", result.seconds);
   }
   report.seconds_render = result.seconds;
-  aside.write({plan.exposure, film, display.get()}, result, report);
+  aside.write({plan.look, film, display.get()}, result, report);
   print_summary(outputs, result, report);
 }
 

@@ -28,7 +28,7 @@ struct ScenePlan {
   ColorMode color = ColorMode::kSpectral;
   RenderSettings settings;  ///< All else.
   InvalidPolicy invalid = InvalidPolicy::kZero;
-  double exposure = 0;
+  PictureLook look;
   FilmPlan film;  ///< Its crop goes before the scene's.
 };
 

@@ -177,7 +177,7 @@ void add_volume_options(CLI::App& command, VolumeOptions& o) {
       "Grid to render, by name or number [density]; three, separated by commas, are the densities "
       "of R, G and B, as are the channels of a grid of vectors");
   add("--density-scale", o.density_scale, "Multiplies the densities [1]")->check(kFiniteNumber);
-  add("--albedo", o.albedo, "Single-scattering albedo, V or R,G,B [0.99]");
+  add("--albedo", o.albedo, "Single-scattering albedo, V or R,G,B [0.999]");
   add("--sigma-a", o.sigma_a, "Absorption per unit of density, V or R,G,B [1/unit]");
   add("--sigma-s", o.sigma_s, "Scattering per unit of density, V or R,G,B [1/unit]");
   add("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function [0]")->check(kFiniteNumber);

@@ -119,7 +119,7 @@ PageTable table_of(const Comparison& comparison, bool errors) {
 }
 
 PngBytes png_of(const PixelEstimates& estimates, double exposure) {
-  return encode_png(to_image(estimates), exposure, "a picture of the report");
+  return encode_png(to_image(estimates), {.exposure = exposure}, "a picture of the report");
 }
 
 PagePictures pictures_of(const Comparison& comparison, const ReportContext& context) {
@@ -151,9 +151,9 @@ PageMaps maps_of(const Comparison& comparison, const std::vector<std::vector<flo
     const int width = small ? test.blocks_across : reference.width;
     const int height = small ? test.blocks_down : reference.height;
     maps.maps.push_back({comparison.configurations[i].name,
-                         encode_png(heat_map(values[i], width, height, scale), 0, "a map")});
+                         encode_png(heat_map(values[i], width, height, scale), {}, "a map")});
   }
-  maps.scale = encode_png(color_bar(scale), 0, "a scale");
+  maps.scale = encode_png(color_bar(scale), {}, "a scale");
   maps.low = number_text(scale.value(0), 2);
   maps.middle = number_text(scale.value(0.5), 2);
   maps.high = number_text(scale.value(1), 2);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "freepath/base/rgb_primaries.h"
+#include "freepath/io/view_transform.h"
 
 namespace freepath {
 
@@ -92,16 +93,21 @@ enum class ExrPrecision {
 void write_exr(const std::string& path, const Image& image,
                ExrPrecision precision = ExrPrecision::kFloat);
 
-/// The bytes of a PNG file of the colour: 8 bits, sRGB's primaries and transfer function, clipped
-/// to [0, 1].
-/// @param exposure values are multiplied by 2^exposure first [stops]
+/// How light becomes a picture of 8 bits.
+struct PictureLook {
+  double exposure = 0;  ///< Values are multiplied by 2^exposure first [stops].
+  ViewTransform view = ViewTransform::kStandard;
+};
+
+/// The bytes of a PNG file of the colour: 8 bits, sRGB's primaries and transfer function.
 /// @param name what to call the image in a message
 /// @throws Error if it can't be encoded
-std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::string& name);
+std::vector<uint8_t> encode_png(const Image& image, const PictureLook& look,
+                                const std::string& name);
 
 /// Writes the colour to a PNG file: as encode_png, in the same two steps as write_exr.
 /// @throws Error that names the file
-void write_png(const std::string& path, const Image& image, double exposure = 0);
+void write_png(const std::string& path, const Image& image, const PictureLook& look = {});
 
 /// The sRGB transfer function, linear → encoded, both in [0, 1] [IEC61966].
 float srgb_from_linear(float linear);

@@ -12,16 +12,16 @@ namespace freepath {
 void write_exr(AsideFile& file, const Image& image, ExrPrecision precision = ExrPrecision::kFloat);
 
 /// Writes a PNG file as the function of that name for paths does.
-void write_png(AsideFile& file, const Image& image, double exposure = 0);
+void write_png(AsideFile& file, const Image& image, const PictureLook& look = {});
 
 /// Writes a PFM or QOI file as the function of that name for paths does.
-void write_plain_image(AsideFile& file, const Image& image, double exposure = 0);
+void write_plain_image(AsideFile& file, const Image& image, const PictureLook& look = {});
 
 /// Writes an image in the format of the file's extension: all channels to an EXR file, else the
 /// colour.
-/// @param exposure of formats of 8 bits [stops]
+/// @param look of formats of 8 bits
 /// @throws Error that names the file
-void write_image(AsideFile& file, const Image& image, double exposure);
+void write_image(AsideFile& file, const Image& image, const PictureLook& look);
 
 /// Whether the extension is that of an EXR file, which holds all channels.
 bool is_exr(const std::string& path);

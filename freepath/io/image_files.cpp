@@ -90,9 +90,10 @@ void write_exr(AsideFile& file, const Image& image, ExrPrecision precision) {
   file.replace_target();
 }
 
-std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::string& name) {
+std::vector<uint8_t> encode_png(const Image& image, const PictureLook& look,
+                                const std::string& name) {
   check_consistent(name, image);
-  const std::vector<uint8_t> bytes = srgb_pixels(image, exposure, name);
+  const std::vector<uint8_t> bytes = srgb_pixels(image, look, name);
   std::vector<uint8_t> encoded;
   const std::string reason =
       image_codec().encode_png(image.width, image.height, bytes.data(), encoded);
@@ -100,16 +101,16 @@ std::vector<uint8_t> encode_png(const Image& image, double exposure, const std::
   return encoded;
 }
 
-void write_png(const std::string& path, const Image& image, double exposure) {
+void write_png(const std::string& path, const Image& image, const PictureLook& look) {
   AsideFile file(path);
-  write_png(file, image, exposure);
+  write_png(file, image, look);
 }
 
-void write_png(AsideFile& file, const Image& image, double exposure) {
+void write_png(AsideFile& file, const Image& image, const PictureLook& look) {
   const std::string& path = file.path();
   if (image_format(path) != ImageFormat::kPng) fail("{}: a PNG file must end in .png", path);
   // The PNG writer doesn't notice a full disk, hence the detour.
-  const std::vector<uint8_t> bytes = encode_png(image, exposure, path);
+  const std::vector<uint8_t> bytes = encode_png(image, look, path);
   file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   file.replace_target();
 }
@@ -118,10 +119,10 @@ bool is_exr(const std::string& path) {
   return !is_plain_image(path) && image_format(path) == ImageFormat::kExr;
 }
 
-void write_image(AsideFile& file, const Image& image, double exposure) {
-  if (is_plain_image(file.path())) return write_plain_image(file, image, exposure);
+void write_image(AsideFile& file, const Image& image, const PictureLook& look) {
+  if (is_plain_image(file.path())) return write_plain_image(file, image, look);
   if (is_exr(file.path())) return write_exr(file, image);
-  write_png(file, image, exposure);
+  write_png(file, image, look);
 }
 
 }  // namespace freepath

@@ -113,25 +113,27 @@ bool is_plain_image(const std::string& path) {
   return extension == ".pfm" || extension == ".qoi";
 }
 
-void write_plain_image(const std::string& path, const Image& image, double exposure) {
+void write_plain_image(const std::string& path, const Image& image, const PictureLook& look) {
   AsideFile file(path);
-  write_plain_image(file, image, exposure);
+  write_plain_image(file, image, look);
 }
 
-void write_plain_image(AsideFile& file, const Image& image, double exposure) {
+void write_plain_image(AsideFile& file, const Image& image, const PictureLook& look) {
   const std::string& path = file.path();
   const std::vector<uint8_t> bytes =
       extension_of(path) == ".pfm"
           ? encode_pfm(image, path)
-          : encode_qoi(image.width, image.height, srgb_pixels(image, exposure, path));
+          : encode_qoi(image.width, image.height, srgb_pixels(image, look, path));
   file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   file.replace_target();
 }
 
-std::vector<uint8_t> srgb_pixels(const Image& image, double exposure, const std::string& name) {
-  if (!std::isfinite(exposure)) fail("{}: the exposure must be a finite number of stops", name);
+std::vector<uint8_t> srgb_pixels(const Image& image, const PictureLook& look,
+                                 const std::string& name) {
+  if (!std::isfinite(look.exposure))
+    fail("{}: the exposure must be a finite number of stops", name);
   const std::array<int, 3> colour = colour_channels(image, name);
-  const auto scale = static_cast<float>(std::exp2(exposure));
+  const auto scale = static_cast<float>(std::exp2(look.exposure));
   std::vector<uint8_t> bytes;
   bytes.reserve(image.pixel_count() * 3);
   const auto matrix = matrix_to_srgb(image);
@@ -139,10 +141,12 @@ std::vector<uint8_t> srgb_pixels(const Image& image, double exposure, const std:
     Vec3d rgb;
     for (int c = 0; c < 3; ++c) rgb[c] = image.values[pixel * image.channels.size() + colour[c]];
     if (matrix) rgb = rgb * *matrix;
+    Vec3f value;
+    // The order of the arguments makes a NaN black.
+    for (int c = 0; c < 3; ++c) value[c] = std::max(0.0F, static_cast<float>(rgb[c]) * scale);
+    value = view_transform(value, look.view);
     for (int c = 0; c < 3; ++c) {
-      const float value = static_cast<float>(rgb[c]) * scale;
-      // The order of the arguments makes a NaN black.
-      const float srgb = srgb_from_linear(std::min(1.0F, std::max(0.0F, value)));
+      const float srgb = srgb_from_linear(std::min(1.0F, value[c]));
       bytes.push_back(static_cast<uint8_t>(std::lround(255.0F * srgb)));
     }
   }

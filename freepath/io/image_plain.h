@@ -14,15 +14,16 @@ namespace freepath {
 bool is_plain_image(const std::string& path);
 
 /// Writes the colour to a PFM or QOI file, in the same two steps as write_exr.
-/// @param exposure of a QOI file, values are multiplied by 2^exposure first [stops]
+/// @param look of a QOI file
 /// @throws Error that names the file
-void write_plain_image(const std::string& path, const Image& image, double exposure = 0);
+void write_plain_image(const std::string& path, const Image& image, const PictureLook& look = {});
 
-/// The colour as pixels of three bytes: times 2^exposure, clipped to [0, 1], with the sRGB transfer
-/// function; NaN is black.
+/// The colour as pixels of three bytes: times 2^exposure, through the view transform, clipped to
+/// [0, 1], with the sRGB transfer function; NaN is black.
 /// @param name what to call the image in a message
 /// @throws Error if there is no colour, or the exposure is not finite
-std::vector<uint8_t> srgb_pixels(const Image& image, double exposure, const std::string& name);
+std::vector<uint8_t> srgb_pixels(const Image& image, const PictureLook& look,
+                                 const std::string& name);
 
 /// The bytes of a PFM file of the colour: R, G and B as they are, in single precision.
 /// @param name what to call the image in a message

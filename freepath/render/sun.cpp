@@ -1,27 +1,37 @@
 #include "freepath/render/sun.h"
 
 #include <algorithm>
-#include <array>
 
 #include "freepath/base/error.h"
+#include "freepath/render/atmosphere.h"
 
 namespace freepath {
 
-Spectrum direct_sun_irradiance(double elevation, double turbidity) {
+namespace {
+
+/// Of direct sunlight to the ground.
+Spectrum transmittance(double elevation, double turbidity) {
   constexpr double kRadians = std::numbers::pi / 180;
   const double height = std::clamp(elevation, 0.0, 90.0);
   const double mass = 1 / (std::sin(height * kRadians) + 0.15 * std::pow(height + 3.885, -1.253));
-  const double beta = 0.04608 * turbidity - 0.04586;                          // amount of aerosol
-  constexpr std::array<double, kChannels> kWavelengths{0.611, 0.549, 0.464};  // [µm]
-  constexpr double kOutside = 128 * kRadiancePerKilocandela;                  // 128 klx
-  Spectrum irradiance;
+  const AirColumn column = air_column(turbidity);
+  Spectrum result;
   for (int channel = 0; channel < kChannels; ++channel) {
-    const double wavelength = kWavelengths[channel];
-    const double rayleigh = 0.008735 * std::pow(wavelength, -4.08);
-    const double aerosol = beta * std::pow(wavelength, -1.3);
-    irradiance[channel] = static_cast<float>(kOutside * std::exp(-(rayleigh + aerosol) * mass));
+    const double depth = (column.rayleigh[channel] + column.aerosol[channel]) * mass;
+    result[channel] = static_cast<float>(std::exp(-depth));
   }
-  return irradiance;
+  return result;
+}
+
+}  // namespace
+
+Spectrum sun_outside() {
+  const Spectrum balance = Spectrum(1) / transmittance(45, 3);
+  return balance * static_cast<float>(128 * kRadiancePerKilocandela / luminance(balance));
+}
+
+Spectrum direct_sun_irradiance(double elevation, double turbidity) {
+  return sun_outside() * transmittance(elevation, turbidity);
 }
 
 Sun::Sun(const SunParameters& parameters, UpAxis up)

@@ -13,25 +13,30 @@
 namespace freepath {
 
 /// Units of radiance, shared by sun and sky: 1 is the radiance of a white diffuse surface under an
-/// illuminance of 100 klx, about that of full sunlight, so that a sunlit scene is well exposed as
-/// it is. Hence an irradiance of π stands for 100 klx and a radiance of π/100 for 1 kcd/m².
-inline constexpr double kRadiancePerKilocandela = std::numbers::pi / 100;
+/// illuminance of 60 klx, about that of the ground under a sun 40 degrees high, so that what the
+/// sun shines on is well exposed as it is. Hence an irradiance of π stands for 60 klx and a
+/// radiance of π/60 for 1 kcd/m².
+inline constexpr double kRadiancePerKilocandela = std::numbers::pi / 60;
+
+/// Irradiance of the sun outside the atmosphere, 128 klx. Its colour is balanced for daylight, as
+/// cameras are: the light of a sun 45 degrees high is white on the ground, at a turbidity of 3.
+Spectrum sun_outside();
 
 /// Where the sun stands and what lies between.
 struct SunParameters {
   double elevation = 45;  ///< Above the horizon [degrees], in [-90, 90].
   double azimuth = 0;     ///< As on a compass, see sky_direction [degrees].
-  double turbidity = 3;   ///< Haze: 2 is very clear, 3 clear, 6 hazy, 10 almost fog.
+  double turbidity = 2;   ///< Haze: 2 is very clear, 3 clear, 6 hazy, 10 almost fog.
   /// On a surface that faces the sun; by default what direct_sun_irradiance gives.
   std::optional<Spectrum> irradiance = {};
 };
 
 /// Irradiance of direct sunlight on a surface that faces the sun, in the units above.
 ///
-/// The illuminance outside the atmosphere, 128 klx, is attenuated for each channel at the dominant
-/// wavelength of its primary (611, 549, 464 nm) by Rayleigh scattering and aerosols over the
-/// relative optical mass [Preetham99, A.1]; the weak bands of ozone, water and mixed gases are left
-/// out. Below the horizon the value of the horizon is used: almost nothing.
+/// What comes from outside the atmosphere is attenuated for each channel by air and aerosols
+/// (air_column) over the relative optical mass [Preetham99, A.1]; the weak bands of ozone, water
+/// and mixed gases are left out. Below the horizon the value of the horizon is used: almost
+/// nothing.
 /// @param elevation [degrees]
 Spectrum direct_sun_irradiance(double elevation, double turbidity);
 

@@ -17,7 +17,7 @@ namespace freepath {
 /// How a density becomes collision coefficients: an extinction and an albedo, or both coefficients.
 struct OpticalProperties {
   float density_scale = 1;          ///< Multiplies the densities.
-  Spectrum albedo{0.99F};           ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
+  Spectrum albedo{0.999F};          ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
   std::optional<Spectrum> sigma_a;  ///< [1/m per unit of density] with sigma_s replaces the albedo;
   std::optional<Spectrum> sigma_s;  ///< of the two the one that is not given is 0.
   PhaseFunction phase = {};
@@ -46,7 +46,7 @@ struct LightOptions {
   std::variant<SkyEnvironment, Spectrum, std::string> environment = SkyEnvironment{};
   InvalidPolicy invalid = InvalidPolicy::kZero;  ///< For pixels of the image.
   bool sun = true;  ///< Whether its disc shines; it shapes the sky in any case.
-  SunParameters sun_parameters{.elevation = 40, .azimuth = 250};
+  SunParameters sun_parameters{.elevation = 38, .azimuth = 255};
 };
 
 /// Where the camera stands; frames the whole volume where nothing is said.

@@ -262,7 +262,8 @@ TEST_F(OverlapRenderTest, ErrorsNameTheOptionOrTheGrid) {
   expect_error("three.vdb --grid red,green,violet", {"three.vdb", "violet", "blue"});
   expect_error("vectors.vdb --grid red,red,red", {"vectors.vdb", "\"red\"", "vec3s"});
   expect_error("vectors.vdb", {"vectors.vdb", "density", "red"});
-  expect_error("nan.vdb --grid red --invalid error", {"nan.vdb", "grid \"red\", channel G: voxel", "NaN"});
+  expect_error("nan.vdb --grid red --invalid error",
+               {"nan.vdb", "grid \"red\", channel G: voxel", "NaN"});
   expect_error("vectors.vdb vectors.vdb vectors.vdb vectors.vdb vectors.vdb vectors.vdb --grid red",
                {"18 densities", "16", "RGB density counts as three"});
   expect_error("ball.vdb missing.vdb", {"missing.vdb"});

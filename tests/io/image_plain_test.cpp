@@ -147,11 +147,12 @@ TEST(PlainImages, AreWrittenByTheirExtension) {
   Image image{2, 1, {"R", "G", "B"}, {0.5F, 2, 0, 1, 0, 0.25F}};
   for (const std::string name : {"plain.PFM", "plain.qoi"}) {
     EXPECT_TRUE(is_plain_image(name));
-    write_plain_image(folder + name, image, -1);
+    write_plain_image(folder + name, image, {.exposure = -1});
     std::ifstream file(folder + name, std::ios::binary);
     const Bytes found{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_EQ(found, name == "plain.PFM" ? encode_pfm(image, "")
-                                         : encode_qoi(2, 1, srgb_pixels(image, -1, "")));
+    EXPECT_EQ(found, name == "plain.PFM"
+                         ? encode_pfm(image, "")
+                         : encode_qoi(2, 1, srgb_pixels(image, {.exposure = -1}, "")));
     std::remove((folder + name).c_str());
   }
   EXPECT_FALSE(is_plain_image("a.exr"));
@@ -161,8 +162,8 @@ TEST(PlainImages, AreWrittenByTheirExtension) {
 TEST(SrgbPixels, AreEncodedAndClipped) {
   const Image image{2, 1, {"R", "G", "B"}, {-1, 1e9F, NAN, 0.125F, 0.125F, 0.25F}};
   // 0.5 is 187.5 of 255 in the transfer function [IEC61966].
-  EXPECT_EQ(srgb_pixels(image, 2, "a"), (Bytes{0, 255, 0, 188, 188, 255}));
-  EXPECT_THROW(srgb_pixels(image, std::nan(""), "a"), Error);
+  EXPECT_EQ(srgb_pixels(image, {.exposure = 2}, "a"), (Bytes{0, 255, 0, 188, 188, 255}));
+  EXPECT_THROW(srgb_pixels(image, {.exposure = std::nan("")}, "a"), Error);
 }
 
 }  // namespace

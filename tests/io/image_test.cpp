@@ -118,7 +118,7 @@ TEST_F(ImageTest, PngAppliesExposureAndTheTransferFunction) {
   image.values[0] = -1;
   image.values[1] = 1e9F;
   image.values[2] = NAN;
-  write_png(path("a.png"), image, 2);
+  write_png(path("a.png"), image, {.exposure = 2});
   const Image read = read_image(path("a.png"));
   EXPECT_EQ(read.channels, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_EQ(read.values[0], 0);
