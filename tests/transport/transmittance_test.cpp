@@ -125,5 +125,54 @@ TEST(Transmittance, OnePercentOfTheExtinctionIsNoticed) {
   }
 }
 
+/// Every unbiased estimator, without roulette, which looks at the size of weights.
+std::vector<std::string> estimators_without_roulette() {
+  std::vector<std::string> names;
+  for (const MethodInfo& info : transmittance_infos()) {
+    const bool plays = std::any_of(info.options.begin(), info.options.end(),
+                                   [](const auto& option) { return option.name == "roulette"; });
+    if (info.name == "closed-form" || info.biased) continue;  // can't walk noise
+    names.push_back(std::string(info.name) + (plays ? ":roulette=0" : ""));
+  }
+  return names;
+}
+
+// Powers of two leave every digit as it is.
+TEST(Transmittance, IsMultipliedByTheWeightsThatRaysBring) {
+  constexpr std::array<float, 3> kBrought = {4, -0.5F, 0.25F};
+  constexpr std::size_t kRays = 500;
+  Component component;
+  component.density = lumpy_field();
+  component.sigma_s = Spectrum(0.5F, 1.5F, 4.0F);
+  const Medium medium({component});
+  const RayStream fresh = repeat_ray(test_rays()[0], kRays, 0);
+  RayStream weighted = fresh;
+  weighted.set_weighted(true);
+  for (int channel = 0; channel < 3; ++channel) {
+    std::fill_n(weighted.weight[channel].begin(), kRays, kBrought[channel]);
+    std::fill_n(weighted.density[channel].begin(), kRays, 1.0F);
+  }
+  for (const std::string& name : estimators_without_roulette()) {
+    WalkSettings settings;
+    settings.tracker = "spectral";
+    settings.transmittance = name;
+    settings.interpolation = Interpolation::kNearest;
+    const Walker walker(medium, settings);
+    FlightStream alone;
+    FlightStream together;
+    WalkStatistics statistics;
+    walker.transmittance(fresh, alone, statistics);
+    walker.transmittance(weighted, together, statistics);
+    std::size_t others = 0;
+    for (int channel = 0; channel < 3; ++channel) {
+      for (std::size_t i = 0; i < kRays; ++i) {
+        const float expected = kBrought[channel] * alone.weight[channel][i];
+        others += together.weight[channel][i] != expected ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(others, 0U) << name;
+  }
+}
+
 }  // namespace
 }  // namespace freepath::testing

@@ -15,10 +15,10 @@ HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
 /// Σ_j W_j exp(-∫ from x_j to the end of the rate), W_j the product of mu_n/rate up to the j-th
-/// tentative collision, W_0 = 1 at the ray's origin [Novak18, Sec. 5.2]: every collision adds its
-/// expected flight to the end without another. Kept as a running sum S: a stretch of optical depth
-/// d turns S into S exp(-d), a collision adds its W. Once S and W are small, Russian roulette is
-/// played for both.
+/// tentative collision, W_0 what the ray brings along [Novak18, Sec. 5.2]: every collision adds its
+/// expected flight to the end without another. Kept as the last W and the sum S of those before it:
+/// a stretch of optical depth d makes (S + W) exp(-d) of S. Once W and S + W are small, Russian
+/// roulette is played for both.
 struct NextFlight : MethodTraits {
   static constexpr MethodOption kOptions[] = {
       {"rate-scale", 1.0F, 1e-3F, 1e3F,
@@ -42,7 +42,7 @@ struct NextFlight : MethodTraits {
 
   template <int N>
   float row_start(int /*row*/) const {
-    return 1.0F;
+    return 0.0F;
   }
 
   template <class Bounds>
@@ -58,9 +58,10 @@ struct NextFlight : MethodTraits {
     VecF largest = hn::Zero(kFloat);
     for (int channel = 0; channel < N; ++channel) {
       const VecF sigma_t = hn::Add(sigma.sigma_a[channel], sigma.sigma_s[channel]);
+      c.rows[channel] = hn::Mul(hn::Add(c.rows[channel], c.weight[channel]), passed);
       c.weight[channel] = hn::Mul(c.weight[channel], hn::Mul(hn::Sub(c.rate, sigma_t), per_rate));
-      c.rows[channel] = mul_add(c.rows[channel], passed, c.weight[channel]);
-      largest = hn::Max(largest, hn::Max(hn::Abs(c.weight[channel]), hn::Abs(c.rows[channel])));
+      const VecF sum = hn::Add(c.rows[channel], c.weight[channel]);
+      largest = hn::Max(largest, hn::Max(hn::Abs(c.weight[channel]), hn::Abs(sum)));
     }
     const VecF gain = roulette_gain(roulette, largest, c.uniform);
     c.absorb = hn::Eq(gain, hn::Zero(kFloat));
@@ -75,7 +76,7 @@ struct NextFlight : MethodTraits {
   HWY_INLINE void finish(const VecF* rows, VecF depth, VecF (&weight)[N]) const {
     const VecF passed = exp_of_negative(hn::Neg(depth));
     for (int channel = 0; channel < N; ++channel) {
-      weight[channel] = hn::Mul(rows[channel], passed);
+      weight[channel] = hn::Mul(hn::Add(rows[channel], weight[channel]), passed);
     }
   }
 
