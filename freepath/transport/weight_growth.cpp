@@ -16,6 +16,8 @@ namespace {
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 /// A mean square of the weight that costs so many times the paths is noise still; more is none.
 constexpr double kLargestGrowth = 1000;
+/// 1, but for the rounding of cross sections.
+constexpr double kBarelyOne = 1 + 1e-6;
 
 /// A method with the names of its options.
 class NamedMethod {
@@ -66,17 +68,22 @@ WeightGrowth growth_below_the_bound(double scale) {
   return growth;
 }
 
-bool has_grey_albedo(const MediumChannels& channels) {
+/// Of a scattering that is chosen by the mean albedo of channels: one of albedo a keeps the mean
+/// square a²/ā. That is largest where a component is alone, being convex.
+double growth_of_mean_albedo(const MediumChannels& channels) {
+  double largest = 0;
   for (const ComponentChannels& component : channels.components) {
-    for (int c = 1; c < channels.count; ++c) {
-      const double cross = double{component.sigma_s[c]} * component.sigma_a[0] -
-                           double{component.sigma_s[0]} * component.sigma_a[c];
-      const double size = double{component.sigma_s[c] + component.sigma_a[c]} *
-                          (component.sigma_s[0] + component.sigma_a[0]);
-      if (std::abs(cross) > 1e-6 * size) return false;
+    double sum = 0;
+    double most = 0;
+    for (int c = 0; c < channels.count; ++c) {
+      const double sigma_t = double{component.sigma_a[c]} + component.sigma_s[c];
+      const double albedo = sigma_t > 0 ? component.sigma_s[c] / sigma_t : 0;
+      sum += albedo;
+      most = std::max(most, albedo);
     }
+    if (sum > 0) largest = std::max(largest, most * most * channels.count / sum);
   }
-  return true;
+  return largest;
 }
 
 /// Of the methods whose events are chosen by coefficients of several channels, and not by the
@@ -87,18 +94,21 @@ WeightGrowth growth_of_choice(const NamedMethod& tracker, const MediumChannels& 
   if (channels.is_grey()) return growth;
   const std::string_view probability = tracker.word("collision-probability");
   if (probability.empty()) {  // of the mean over channels that share an extinction
-    const bool analog = absorption == Absorption::kAnalog &&
-                        tracker.word("energy-partitioning") != "yes" && !has_grey_albedo(channels);
+    const bool partitions = tracker.word("energy-partitioning") == "yes";
     if (tracker.name() == "hero-wavelength") {
       if (tracker.word("selection") != "throughput-albedo") return growth;
       // A tenth of the heroes are drawn whatever the throughput is.
       growth.per_flight = 1 / 0.9;
       growth.reason = "its heroes are drawn anew at each scattering; take selection=uniform";
-    } else if (analog) {
-      growth.per_flight = channels.count;
+    } else if (partitions || absorption == Absorption::kAnalog) {
+      const double mean_square = growth_of_mean_albedo(channels);
+      if (mean_square <= kBarelyOne) return growth;
+      growth.per_flight = mean_square;
       growth.reason =
-          "analog absorption chooses one event for channels of different albedo; take weighted "
-          "absorption (--absorption weighted), or the tracker spectral";
+          partitions ? "energy-partitioning chooses one event for channels of different albedo; "
+                       "take energy-partitioning=no and weighted absorption"
+                     : "analog absorption chooses one event for channels of different albedo; take "
+                       "weighted absorption (--absorption weighted), or the tracker spectral";
     }
     return growth;
   }
