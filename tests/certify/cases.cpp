@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -40,8 +41,14 @@ std::vector<std::string> values_of(const MethodOption& option) {
 }
 
 /// Properties of a case as numbers, to enumerate and to pair them.
-constexpr int kProperties = 7;
+constexpr int kProperties = 8;
 using Levels = std::array<int, kProperties>;
+
+using Pair = std::array<int, 4>;  // property, its level, another property, its level
+/// What follows from a property, and stands for it in some pairs: a spelling's method, and a
+/// medium's kind.
+constexpr int kMethod = kProperties;
+constexpr int kKind = kProperties + 1;
 
 class CaseSpace {
  public:
@@ -53,7 +60,19 @@ class CaseSpace {
                2,
                2,
                free_paths ? 2 : 1,
-               free_paths ? 2 : 1};
+               free_paths ? 2 : 1,
+               2};
+    for (const std::string& variant : variants_) {
+      const std::string name = variant.substr(0, variant.find(':'));
+      if (method_names_.empty() || method_names_.back() != name) method_names_.push_back(name);
+      method_of_.push_back(static_cast<int>(method_names_.size()) - 1);
+    }
+    for (const CertifiedMedium& medium : certified_media()) {
+      const std::string kind = kind_of(medium);
+      const auto found = std::find(kinds_.begin(), kinds_.end(), kind);
+      kind_of_.push_back(static_cast<int>(found - kinds_.begin()));
+      if (found == kinds_.end()) kinds_.push_back(kind);
+    }
     possible_.resize(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2] * counts_[3]);
     Levels levels{};
     do possible_[place(levels)] = !reason_against(make(levels));
@@ -73,7 +92,27 @@ class CaseSpace {
     test.one_lane = levels[4] == 1;
     test.absorption = levels[5] == 0 ? Absorption::kWeighted : Absorption::kAnalog;
     test.emission = levels[6] == 0 ? EmissionTally::kCollision : EmissionTally::kAnalog;
+    test.history = levels[7] == 1;
     return test;
+  }
+
+  /// Calls f with every pair of values of a case.
+  template <class Function>
+  void for_each_pair(const Levels& levels, Function f) const {
+    f(Pair{kMethod, method_of_[levels[0]], 1, levels[1]});
+    f(Pair{0, levels[0], kKind, kind_of_[levels[1]]});
+    for (int i = 0; i < kProperties; ++i) {
+      for (int j = std::max(i + 1, i == 0 ? 2 : 0); j < kProperties; ++j) {
+        f(Pair{i, levels[i], j, levels[j]});
+      }
+    }
+  }
+
+  /// Whether a case has one of the values of a pair.
+  bool has(const Levels& levels, int property, int value) const {
+    if (property == kMethod) return method_of_[levels[0]] == value;
+    if (property == kKind) return kind_of_[levels[1]] == value;
+    return levels[property] == value;
   }
 
   /// Calls f with every possible case.
@@ -103,18 +142,13 @@ class CaseSpace {
 
   bool free_paths_;
   std::vector<std::string> variants_;
+  std::vector<std::string> method_names_;
+  std::vector<int> method_of_;  // of variants
+  std::vector<std::string> kinds_;
+  std::vector<int> kind_of_;  // of media
   Levels counts_{};
   std::vector<bool> possible_;
 };
-
-using Pair = std::array<int, 4>;  // property, its level, another property, its level
-
-template <class Function>
-void for_each_pair(const Levels& levels, Function f) {
-  for (int i = 0; i < kProperties; ++i) {
-    for (int j = i + 1; j < kProperties; ++j) f(Pair{i, levels[i], j, levels[j]});
-  }
-}
 
 }  // namespace
 
@@ -127,7 +161,10 @@ WalkSettings CertifiedCase::settings() const {
   settings.absorption = absorption;
   settings.emission = emission;
   settings.simd = one_lane ? Simd::kOneLane : Simd::kBest;
-  settings.seed = 20170711;
+  settings.seed = 0xCBF29CE484222325U;  // FNV-1a
+  for (const char letter : name()) {
+    settings.seed = (settings.seed ^ static_cast<unsigned char>(letter)) * 0x100000001B3U;
+  }
   return settings;
 }
 
@@ -136,6 +173,7 @@ std::string CertifiedCase::modes() const {
   std::string modes = kNames[static_cast<int>(interpolation)];
   modes += tight ? ", tight" : ", loose";
   modes += one_lane ? ", one lane" : ", lanes";
+  if (history) modes += ", history";
   if (!free_paths) return modes;
   modes += absorption == Absorption::kWeighted ? ", weighted absorption" : ", analog absorption";
   modes += emission == EmissionTally::kCollision ? ", collision emission" : ", analog emission";
@@ -144,6 +182,22 @@ std::string CertifiedCase::modes() const {
 
 std::string CertifiedCase::name() const {
   return method + " | " + certified_media()[medium].name + " | " + modes();
+}
+
+float history_weight(int channel) {
+  constexpr float kWeights[] = {0.5F, 2, -1, 4, 0.25F, -2, 1, -0.5F};
+  return kWeights[channel % std::size(kWeights)];
+}
+
+float history_density(int channel) {
+  constexpr float kDensities[] = {1.5F, 0.5F, 1, 2, 0.25F, 1, 0.75F, 3};
+  return kDensities[channel % std::size(kDensities)];
+}
+
+const char* kind_of(const CertifiedMedium& medium) {
+  if (medium.channels.count != kChannels) return "wavelengths";
+  if (medium.channels.components.size() > 1) return "overlapping";
+  return medium.channels.has_grey_extinction() ? "grey" : "coloured";
 }
 
 std::vector<std::string> certified_variants(bool free_paths) {
@@ -189,7 +243,7 @@ std::vector<CertifiedCase> pairwise_cases(bool free_paths) {
   const CaseSpace space(free_paths);
   std::set<Pair> open;
   space.for_each([&](const Levels& levels) {
-    for_each_pair(levels, [&](const Pair& pair) { open.insert(pair); });
+    space.for_each_pair(levels, [&](const Pair& pair) { open.insert(pair); });
   });
   RandomStream random(1, 0, 0, 0);
   std::vector<CertifiedCase> cases;
@@ -203,17 +257,22 @@ std::vector<CertifiedCase> pairwise_cases(bool free_paths) {
       for (int i = 0; i < kProperties; ++i) {
         levels[i] = static_cast<int>(random.bits() % static_cast<uint32_t>(space.counts()[i]));
       }
-      levels[wanted[0]] = wanted[1];
-      levels[wanted[2]] = wanted[3];
-      if (!space.possible(levels)) continue;
+      for (const int i : {0, 2}) {
+        if (wanted[i] < kProperties) levels[wanted[i]] = wanted[i + 1];
+      }
+      if (!space.has(levels, wanted[0], wanted[1]) || !space.has(levels, wanted[2], wanted[3]) ||
+          !space.possible(levels)) {
+        continue;
+      }
       int covered = 0;
-      for_each_pair(levels, [&](const Pair& pair) { covered += open.count(pair) != 0 ? 1 : 0; });
+      space.for_each_pair(levels,
+                          [&](const Pair& pair) { covered += open.count(pair) != 0 ? 1 : 0; });
       if (covered > most) {
         most = covered;
         best = levels;
       }
     }
-    for_each_pair(best, [&](const Pair& pair) { open.erase(pair); });
+    space.for_each_pair(best, [&](const Pair& pair) { open.erase(pair); });
     cases.push_back(space.make(best));
   }
   return cases;

@@ -69,7 +69,23 @@ int run(const Options& options) {
                  options.full ? "Certification: every case" : "Certification: all pairs", results,
                  verdict);
   }
-  return verdict.failed.empty() ? 0 : 1;
+  bool passes = verdict.failed.empty();
+  std::vector<MethodVerdict> pooled = verdict.methods;
+  pooled.push_back(verdict.together);
+  for (const MethodVerdict& method : pooled) {
+    const bool good = verdict.passes(method);
+    fmt::print("{:<24} {:4} cases, {:4} of {:4} count, median error {:.2g} %, pooled z {:5.2f}{}\n",
+               method.method, method.cases, method.principal_tested, method.principal,
+               100 * method.median_error, method.pooled_z, good ? "" : " FAILS");
+    passes = passes && good;
+  }
+  if (!options.full && options.method.empty()) {
+    for (const std::string& line : shortfalls(verdict)) {
+      fmt::print(stderr, "fails: {}\n", line);
+      passes = false;
+    }
+  }
+  return passes ? 0 : 1;
 }
 
 }  // namespace

@@ -38,6 +38,12 @@ constexpr double kSurelySeen = 20;
 constexpr double kUsualWork = 40;
 constexpr double kMostTimes = 8;
 constexpr double kSlowShare = 1.0 / 16;
+/// The share of the most paths that is spent where even those don't bring the error that is wanted.
+constexpr double kBeyondReach = 0.22;
+/// Relative standard errors below this are too near to rounding for a mean's sign to tell anything.
+constexpr double kClearOfRounding = 5 * kRounding;
+/// A flight from wherever paths with a history are.
+constexpr uint32_t kHistoryStream = 0x00012345;
 /// Below it a transmittance is 0 in single precision.
 constexpr double kUnderflow = 1e-45;
 
@@ -59,17 +65,22 @@ struct Moments {
   double variance(double paths) const {
     return std::max(0.0, squares / paths - sum / paths * (sum / paths));
   }
+  double skewness(double paths) const {
+    const double spread = variance(paths);
+    const double mean = sum / paths;
+    if (spread <= 1e-10 * mean * mean) return 0;
+    const double third = cubes / paths - 3 * mean * squares / paths + 2 * mean * mean * mean;
+    return third / (spread * std::sqrt(spread));
+  }
   /// How many paths make their mean normal.
   double paths_for_normal_mean(double paths) const {
     const double spread = variance(paths);
     const double mean = sum / paths;
     if (spread <= 1e-10 * mean * mean) return 0;
-    const double third = cubes / paths - 3 * mean * squares / paths + 2 * mean * mean * mean;
     const double fourth = fourths / paths - 4 * mean * cubes / paths +
                           6 * mean * mean * squares / paths - 3 * std::pow(mean, 4);
-    const double skewness = third / (spread * std::sqrt(spread));
     const double kurtosis = fourth / (spread * spread);
-    return std::max(std::pow(skewness / kLargestSkewness, 2), kurtosis / kLargestKurtosis);
+    return std::max(std::pow(skewness(paths) / kLargestSkewness, 2), kurtosis / kLargestKurtosis);
   }
 };
 
@@ -124,7 +135,29 @@ class Measurement {
       compare(channel, static_cast<double>(paths), result);
     }
     result.variance /= channel_count();
+    result.signed_z = pool(result, static_cast<double>(paths));
     return result;
+  }
+
+  /// How far the sum over channels is off, in standard errors. A mean and its error are correlated
+  /// where values are skewed: -skewness/(2 √n) is what that makes of the expectation.
+  std::optional<double> pool(const CaseResult& result, double paths) const {
+    if (!tests_every_channel(result)) return {};
+    double exact = 0;
+    double sum = 0;
+    double variance = 0;
+    double third = 0;
+    for (int channel = 0; channel < channel_count(); ++channel) exact += exact_[channel].radiance;
+    for (const Moments& moments : together_) {
+      const double spread = moments.variance(paths);
+      sum += moments.sum / paths;
+      variance += spread;
+      third += moments.skewness(paths) * spread * std::sqrt(spread);
+    }
+    const double error = std::sqrt(variance / paths);
+    if (!(error > kClearOfRounding * exact)) return {};
+    const double skewness = third / (variance * std::sqrt(variance));
+    return (sum - exact) / error + skewness / (2 * std::sqrt(paths));
   }
 
   /// Whether the radiance or transmittance of each channel counts.
@@ -134,10 +167,10 @@ class Measurement {
     });
   }
 
+  bool is(const char* name) const { return test_.method_name() == name; }
   bool slow() const {
-    const auto is = [&](const char* name) { return test_.method.rfind(name, 0) == 0; };
-    return test_.one_lane || is("regular") || is("closed-form") || is("p-series") ||
-           is("unbiased-ray-marching");
+    if (is("closed-form")) return false;  // one draw a path
+    return test_.one_lane || is("regular") || is("p-series") || is("unbiased-ray-marching");
   }
   bool has_no_variance() const {
     return !test_.free_paths && (test_.method == "regular" || test_.method == "closed-form");
@@ -193,7 +226,8 @@ class Measurement {
     const double most = (slow() ? kSlowShare : 1) * static_cast<double>(budget_.most_paths) *
                         std::min(kMostTimes, kUsualWork / work);
     most_paths_ = std::max(pilot_paths, static_cast<uint64_t>(most));
-    return std::clamp(static_cast<uint64_t>(std::min(wanted, most)), pilot_paths, most_paths_);
+    const double affordable = wanted <= most ? wanted : kBeyondReach * most;
+    return std::clamp(static_cast<uint64_t>(affordable), pilot_paths, most_paths_);
   }
 
   void walk(uint32_t pixel, uint64_t paths, WalkStatistics& statistics) {
@@ -203,14 +237,19 @@ class Measurement {
       tally.bins.assign(tally.edges.size() - 1, {});
     }
     const int turns = shared_ ? 1 : channel_count();
+    together_.assign(turns, {});
     FlightStream flights;
+    std::vector<double> sums;
     for (int turn = 0; turn < turns; ++turn) {
       const Walker walker(medium_, shared_ ? channels_ : channels_.only(turn), settings_);
       for (uint64_t done = 0; done < paths; done += kBatch) {
         const std::size_t count = std::min<uint64_t>(kBatch, paths - done);
         RayStream rays =
             repeat_ray(ray_.origin, ray_.direction, ray_.t_max, count, static_cast<uint32_t>(done));
-        std::fill(rays.pixel.begin(), rays.pixel.end(), pixel);
+        // Channels that take their own paths take their own random numbers.
+        std::fill(rays.pixel.begin(), rays.pixel.end(), pixel + (static_cast<uint32_t>(turn) << 8));
+        if (test_.history) bring_history(rays, turn);
+        sums.assign(count, 0);
         if (test_.free_paths) {
           walker.free_paths(rays, flights, statistics);
         } else {
@@ -220,20 +259,51 @@ class Measurement {
         const int last = shared_ ? channel_count() : turn + 1;
         for (int channel = first; channel < last; ++channel) {
           const int slot = shared_ ? channel : 0;
-          for (std::size_t i = 0; i < count; ++i) add(flights, i, slot, channel);
+          for (std::size_t i = 0; i < count; ++i) sums[i] += add(flights, i, slot, channel);
         }
+        for (const double sum : sums) together_[turn].add(sum);
       }
     }
   }
 
-  void add(const FlightStream& flights, std::size_t i, int slot, int channel) {
+  /// Weights and densities as a path has them that has been through other media.
+  void bring_history(RayStream& rays, int turn) const {
+    rays.set_weighted(true);
+    const double mean = mean_density();
+    for (int slot = 0; slot < kMaxChannels; ++slot) {
+      const int channel = shared_ ? slot : turn;
+      const auto density = static_cast<float>(history_density(channel) / mean);
+      std::fill(rays.weight[slot].begin(), rays.weight[slot].end(), history_weight(channel));
+      std::fill(rays.density[slot].begin(), rays.density[slot].end(), density);
+    }
+    std::fill(rays.stream.begin(), rays.stream.end(), kHistoryStream);
+  }
+
+  /// Of the history's densities, over the channels of the compiled walk: some may stand twice.
+  double mean_density() const {
+    const int count = shared_ && !channels_.is_grey() ? channels_.count : 1;
+    const std::vector<Kernel>& trackers = kernels(settings_.simd).trackers;
+    const auto kernel = std::find_if(
+        trackers.begin(), trackers.end(),
+        [&](const Kernel& candidate) { return candidate.info.name == test_.method_name(); });
+    if (kernel == trackers.end()) return 1;
+    const int compiled = compiled_channels(kernel->walks, count);
+    double sum = 0;
+    for (int row = 0; row < compiled; ++row) sum += history_density(row % count);
+    return sum / compiled;
+  }
+
+  /// Adds a flight to what is gathered of a channel, relative to the weight that its ray brought.
+  /// @return what it has seen
+  double add(const FlightStream& flights, std::size_t i, int slot, int channel) {
     ChannelTally& tally = tallies_[channel];
-    const double weight = flights.weight[slot][i];
+    const double per_weight = test_.history ? 1 / history_weight(channel) : 1;
+    const double weight = flights.weight[slot][i] * per_weight;
     if (!test_.free_paths) {
       tally.radiance.add(weight);
-      return;
+      return weight;
     }
-    double seen = flights.emitted[slot][i];
+    double seen = flights.emitted[slot][i] * per_weight;
     if (flights.event[i] == Event::kEscape) {
       tally.escaped.add(weight);
       seen += weight;
@@ -246,6 +316,7 @@ class Measurement {
       tally.bins[bin].add(weight);
     }
     tally.radiance.add(seen);
+    return seen;
   }
 
   Check compare_mean(std::string quantity, const Moments& moments, double paths,
@@ -260,6 +331,9 @@ class Measurement {
     const bool few = std::min(static_cast<double>(moments.count), exact * paths) < kFew;
     // A radiance may be all of units too, and its quadrature a trifle above 1.
     if (few && moments.unit && moments.count >= kSurelyAnalog && exact <= 1) {
+      // That all paths are alike tells nothing where so few would differ.
+      const bool all = static_cast<double>(moments.count) == paths;
+      if (all && (1 - exact) * paths < kSurelySeen) check.standing = Standing::kRare;
       check.z = z_of_p(binomial_two_sided_p(moments.count, static_cast<uint64_t>(paths), exact));
       return check;
     }
@@ -357,6 +431,7 @@ class Measurement {
   bool shared_;
   uint64_t most_paths_ = 0;
   std::array<ChannelTally, kMaxChannels> tallies_;
+  std::vector<Moments> together_;  ///< Of the channels of a path; one for each walker.
   std::array<Exact, kMaxChannels> exact_;
 };
 

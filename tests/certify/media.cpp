@@ -272,7 +272,8 @@ const std::vector<CertifiedMedium>& certified_media() {
 }
 
 double scattered_radiance(int component, int channel, double t) {
-  return 0.8 + 0.1 * component + 0.4 * std::cos(3 * t + channel);
+  constexpr double kOfComponent[] = {0.8, 0.3, 1.4};  // so that a wrong component shows
+  return kOfComponent[component] + 0.3 * std::cos(3 * t + channel);
 }
 
 }  // namespace freepath::testing

@@ -6,59 +6,31 @@
 
 #include <algorithm>
 
-#include "freepath/transport/walk_stream-inl.h"
 #include "freepath/transport/walker.h"
+#include "tests/certify/planted-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 namespace {
 
-/// A method with factors on its weights. Everything else of it is inherited.
 template <class Method>
-struct Planted : Method {
-  explicit Planted(std::span<const float> options)
-      : Method(options),
-        absorption(options[kMaxMethodOptions]),
-        scattering(options[kMaxMethodOptions + 1]),
-        null(options[kMaxMethodOptions + 2]) {}
-
-  template <int N, class Coefficients>
-  HWY_INLINE void collide(const WalkModes& modes, const Coefficients& sigma,
-                          Collision<N>& c) const {
-    const Collision<N> before = c;
-    Method::template collide<N>(modes, sigma, c);
-    plant(before, c.lanes, c);
-  }
-
-  template <int N, class Coefficients>
-  HWY_INLINE MaskF decide(const WalkModes& modes, const Coefficients& control,
-                          Collision<N>& c) const {
-    const Collision<N> before = c;
-    const MaskF decided = Method::template decide<N>(modes, control, c);
-    plant(before, decided, c);
-    return decided;
-  }
-
-  template <int N>
-  HWY_INLINE void plant(const Collision<N>& before, MaskF lanes, Collision<N>& c) const {
-    const VecF factor = hn::IfThenElse(c.scatter, set(scattering),
-                                       hn::IfThenElse(c.absorb, set(absorption), set(null)));
-    for (int channel = 0; channel < N; ++channel) {
-      assign(c.weight[channel], lanes, hn::Mul(c.weight[channel], factor));
-      const VecF added = hn::Sub(c.emitted[channel], before.emitted[channel]);
-      c.emitted[channel] = mul_add(added, set(absorption), before.emitted[channel]);
-    }
-  }
-
-  float absorption;
-  float scattering;
-  float null;
+constexpr bool kPlaysRoulette = requires(const Method& method) {
+  method.roulette;
 };
+
+template <int N, class Method>
+freepath::testing::Mutant mutant_of(bool free_paths) {
+  return {.name = Method::kInfo.name,
+          .free_paths = free_paths,
+          .channels = N,
+          .walk = &planted_walk_stream<N, Method>,
+          .plays_roulette = kPlaysRoulette<Method>};
+}
 
 template <int N, class... Methods>
 void add_mutants(bool free_paths, MethodList<Methods...> /*list*/,
                  std::vector<freepath::testing::Mutant>& mutants) {
-  (mutants.push_back({Methods::kInfo.name, free_paths, N, &walk_stream<N, Planted<Methods>>}), ...);
+  (mutants.push_back(mutant_of<N, Methods>(free_paths)), ...);
 }
 
 }  // namespace
@@ -74,6 +46,8 @@ Mutant::Options Mutant::options(const PlantedFactors& planted) const {
   options[kMaxMethodOptions] = planted.absorption;
   options[kMaxMethodOptions + 1] = planted.scattering;
   options[kMaxMethodOptions + 2] = planted.null;
+  options[kMaxMethodOptions + 3] = planted.component;
+  options[kMaxMethodOptions + 4] = planted.roulette;
   return options;
 }
 

@@ -16,6 +16,9 @@ struct PlantedFactors {
   float absorption = 1;  ///< On the tally of emission, and on the weight of an absorption.
   float scattering = 1;
   float null = 1;
+  /// On the number that chooses the component of a scattering; below 1.
+  float component = 1;
+  float roulette = 1;  ///< On what survives the roulette of an estimator.
 };
 
 /// A null-collision method of the registry that takes PlantedFactors.
@@ -24,9 +27,11 @@ struct Mutant {
   bool free_paths = true;
   int channels = 1;  ///< That it is compiled for.
   WalkFunction walk = nullptr;
+  bool plays_roulette = false;
+  Simd simd = Simd::kBest;  ///< That it is compiled for; kBest: the machine's own.
 
   /// What `walk` takes for options: the standard ones, and the factors.
-  using Options = std::array<float, kMaxMethodOptions + 3>;
+  using Options = std::array<float, kMaxMethodOptions + 5>;
   Options options(const PlantedFactors& planted) const;
 };
 
@@ -34,7 +39,10 @@ struct Mutant {
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline void PrintTo(const Mutant& mutant, std::ostream* out) { *out << mutant.name; }
 
-/// All of them.
+/// One of every null-collision method of the registry.
 std::vector<Mutant> mutants();
+
+/// One of `delta` for each SIMD target that this machine runs.
+std::vector<Mutant> target_mutants();
 
 }  // namespace freepath::testing

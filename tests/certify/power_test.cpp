@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "freepath/transport/walker.h"
+#include "tests/certify/media.h"
 #include "tests/certify/mutants.h"
 #include "tests/statistics.h"
 #include "tests/transport/media_for_tests.h"
@@ -22,6 +23,19 @@ constexpr uint64_t kMostPaths = 12'000'000;
 constexpr uint64_t kPilotPaths = 50'000;
 constexpr std::size_t kBatch = 50'000;
 constexpr float kError = 1.01F;
+/// What survives roulette matters less, and its number of paths should not.
+constexpr float kRouletteError = 1.03F;
+constexpr float kComponentError = 0.97F;
+
+/// The channel of two_components() that is looked at: both scatter in it.
+constexpr int kChannelOfTwo = 1;
+
+const CertifiedMedium& two_components() {
+  const std::vector<CertifiedMedium>& media = certified_media();
+  return *std::find_if(media.begin(), media.end(), [](const CertifiedMedium& medium) {
+    return medium.name == "two components";
+  });
+}
 
 using ChannelStatistics = std::array<RunningStatistics, kChannels>;
 
@@ -95,26 +109,36 @@ Plan make_plan(const ChannelStatistics& honest, const ChannelStatistics& planted
 
 class CertifyMutant : public ::testing::TestWithParam<Mutant> {};
 
-TEST_P(CertifyMutant, OnePercentInAWeightIsNoticed) {
-  const Mutant& mutant = GetParam();
+/// The errors that a mutant has places for.
+std::vector<std::pair<const char*, PlantedFactors>> errors_of(const Mutant& mutant) {
   std::vector<std::pair<const char*, PlantedFactors>> errors = {{"mu_n", {1, 1, kError}}};
-  if (mutant.free_paths) {
+  if (mutant.free_paths && mutant.simd == Simd::kBest) {
     errors.push_back({"mu_a", {kError, 1, 1}});
     errors.push_back({"mu_s", {1, kError, 1}});
   }
+  if (mutant.plays_roulette) errors.push_back({"roulette", {.roulette = kRouletteError}});
+  return errors;
+}
+
+TEST_P(CertifyMutant, OnePercentInAWeightIsNoticed) {
+  const Mutant& mutant = GetParam();
   const double threshold = family_wise_threshold(1e-3, 200);  // of all methods and errors
-  const ChannelStatistics honest = walk(mutant, {}, kPilotPaths, 1);
-  for (const auto& [name, planted] : errors) {
-    const Plan plan = make_plan(honest, walk(mutant, planted, kPilotPaths, 1));
+  const auto z = [&](const RunningStatistics& found, int channel) {
+    return std::abs(z_score(found.mean(), found.standard_error(), exact(mutant, channel)));
+  };
+  const ChannelStatistics pilot = walk(mutant, {}, kPilotPaths, 1);
+  uint64_t most = 0;
+  for (const auto& [name, planted] : errors_of(mutant)) {
+    const Plan plan = make_plan(pilot, walk(mutant, planted, kPilotPaths, 1));
     ASSERT_LT(plan.paths, kMostPaths) << name << " hardly matters";
     const auto paths = std::max<uint64_t>(20'000, static_cast<uint64_t>(plan.paths));
-    const double expected = exact(mutant, plan.channel);
-    const auto z = [&](const PlantedFactors& factors) {
-      const RunningStatistics found = walk(mutant, factors, paths, 2)[plan.channel];
-      return std::abs(z_score(found.mean(), found.standard_error(), expected));
-    };
-    EXPECT_GT(z(planted), threshold) << name << ", " << paths << " paths";
-    EXPECT_LT(z({}), threshold) << "without an error, " << paths << " paths";
+    const RunningStatistics found = walk(mutant, planted, paths, 2)[plan.channel];
+    EXPECT_GT(z(found, plan.channel), threshold) << name << ", " << paths << " paths";
+    most = std::max(most, paths);
+  }
+  const ChannelStatistics honest = walk(mutant, {}, most, 2);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    EXPECT_LT(z(honest[channel], channel), threshold) << "without an error, " << most << " paths";
   }
 }
 
@@ -123,6 +147,72 @@ INSTANTIATE_TEST_SUITE_P(All, CertifyMutant, ::testing::ValuesIn(mutants()), [](
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
+
+INSTANTIATE_TEST_SUITE_P(Targets, CertifyMutant, ::testing::ValuesIn(target_mutants()),
+                         [](const auto& test) {
+                           std::string name(to_string(test.param.simd));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+/// Of flights through two components, the weight that scatters by the second, in each channel that
+/// is walked.
+ChannelStatistics scattered_by_second(const Mutant& mutant, const PlantedFactors& planted,
+                                      uint64_t paths, uint32_t pixel) {
+  const CertifiedMedium& medium = two_components();
+  const MediumChannels channels =
+      mutant.channels == 1 ? medium.channels.only(kChannelOfTwo) : medium.channels;
+  const MediumView view = view_of(*medium.tight, Interpolation::kNearest, channels);
+  const WalkModes modes = {Absorption::kAnalog, EmissionTally::kCollision, false};
+  const Mutant::Options options = mutant.options(planted);
+  ChannelStatistics statistics;
+  FlightStream flights;
+  WalkStatistics counts;
+  for (uint64_t done = 0; done < paths; done += kBatch) {
+    const std::size_t count = std::min<uint64_t>(kBatch, paths - done);
+    RayStream rays = repeat_ray(medium.ray.origin, medium.ray.direction, medium.ray.t_max, count,
+                                static_cast<uint32_t>(done));
+    std::fill(rays.pixel.begin(), rays.pixel.end(), pixel);
+    flights.resize(count);
+    mutant.walk(view, options, modes, 20170502, rays, flights, counts);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool second = flights.event[i] == Event::kScatter && flights.component[i] == 1;
+      for (int slot = 0; slot < mutant.channels; ++slot) {
+        const int channel = mutant.channels == 1 ? kChannelOfTwo : slot;
+        statistics[channel].add(second ? flights.weight[slot][i] : 0);
+      }
+    }
+  }
+  return statistics;
+}
+
+double exactly_scattered_by_second(int channel) {
+  const CertifiedMedium& medium = two_components();
+  const RayProfile profile(*medium.tight, medium.channels, medium.ray, Interpolation::kNearest);
+  double exact = 0;
+  profile.visit(0, medium.ray.t_max, [&](const RayProfile::Node& node) {
+    exact += node.width * node.transmittance[channel] * node.density[1] *
+             medium.channels.components[1].sigma_s[channel];
+  });
+  return exact;
+}
+
+TEST_P(CertifyMutant, ThreePercentInTheChoiceOfAComponentIsNoticed) {
+  const Mutant& mutant = GetParam();
+  if (!mutant.free_paths) GTEST_SKIP() << "estimators choose none";
+  const PlantedFactors planted = {.component = kComponentError};
+  const Plan plan = make_plan(scattered_by_second(mutant, {}, kPilotPaths, 1),
+                              scattered_by_second(mutant, planted, kPilotPaths, 1));
+  ASSERT_LT(plan.paths, kMostPaths) << "hardly matters";
+  const auto paths = std::max<uint64_t>(20'000, static_cast<uint64_t>(plan.paths));
+  const double expected = exactly_scattered_by_second(plan.channel);
+  const auto z = [&](const PlantedFactors& factors) {
+    const RunningStatistics found = scattered_by_second(mutant, factors, paths, 2)[plan.channel];
+    return std::abs(z_score(found.mean(), found.standard_error(), expected));
+  };
+  EXPECT_GT(z(planted), 5) << paths << " paths";
+  EXPECT_LT(z({}), 4.5) << "without an error, " << paths << " paths";
+}
 
 /// A reference method in a homogeneous medium whose extinction is `scale` times too large.
 RunningStatistics walk_reference(const std::string& method, bool free_paths, float scale,
@@ -154,12 +244,17 @@ RunningStatistics walk_reference(const std::string& method, bool free_paths, flo
 // The methods that are no walks know no weight of a collision; theirs is the extinction itself.
 TEST(CertifyPower, OnePercentOfTheExtinctionIsNoticedByReferenceMethods) {
   const double expected = std::exp(-0.8);
+  const double shift = expected - std::exp(-0.8 * kError);
   const std::vector<std::pair<std::string, bool>> methods = {
       {"regular", true},      {"closed-form", true}, {"regular", false},
       {"closed-form", false}, {"p-series", false},   {"unbiased-ray-marching", false}};
   for (const auto& method : methods) {
+    constexpr uint64_t kFew = 4000;
+    const RunningStatistics pilot = walk_reference(method.first, method.second, 1, kFew);
+    const double wanted = pilot.variance() * std::pow(kWantedShift / shift, 2);
+    const auto paths = std::max(kFew, static_cast<uint64_t>(wanted));
     const auto z = [&](float scale) {
-      const RunningStatistics found = walk_reference(method.first, method.second, scale, 1'200'000);
+      const RunningStatistics found = walk_reference(method.first, method.second, scale, paths);
       const double apart = std::abs(found.mean() - expected);
       return apart < 1e-6 ? 0 : apart / found.standard_error();
     };

@@ -1,0 +1,136 @@
+// The power of furnaces: 2 % planted in the roulette of paths, in the shares of light sampling or
+// in those of the emission guide must show, with as many samples as make the shift 7 standard
+// errors.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "freepath/render/renderer.h"
+#include "tests/certify/planted.h"
+#include "tests/scene/rendered_scenes.h"
+#include "tests/transport/media_for_tests.h"
+
+namespace freepath::testing {
+namespace {
+
+constexpr double kWantedPathShift = 7;  // standard errors
+constexpr double kClearly = 5;
+constexpr float kPathError = 1.02F;
+
+/// A mean over a film.
+struct FilmMean {
+  double mean = 0;
+  double error = 0;
+};
+
+FilmMean mean_of(const Image& image) {
+  const int value = find_channel(image, "G").value();
+  const int variance = find_channel(image, "variance.G").value();
+  FilmMean result;
+  const auto pixels = static_cast<double>(image.pixel_count());
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    result.mean += image.values[i * image.channels.size() + value] / pixels;
+    result.error += image.values[i * image.channels.size() + variance];
+  }
+  result.error = std::sqrt(result.error) / pixels;
+  return result;
+}
+
+/// A picture that is 1 everywhere.
+using Furnace = FilmMean (*)(uint32_t samples, uint64_t seed);
+
+/// Scatters and absorbs, emits what it would see, and is seen from outside.
+FilmMean volume_furnace(uint32_t samples, uint64_t seed) {
+  Matrix4d scale;
+  scale.setScale(Vec3d(0.25));
+  Component fog;
+  fog.density = make_field(
+      Vec3i(-4), Vec3i(3), [](const Vec3i& p) { return hash_noise(p); }, scale);
+  fog.sigma_a = Spectrum(3.0F);
+  fog.sigma_s = Spectrum(6.0F);
+  fog.emission = Spectrum(1.0F);
+  const Medium medium({fog});
+  const Camera camera(frame_box(medium.world_bounds(), UpAxis::kY, 25, 1), 8, 8);
+  RenderSettings settings;
+  settings.samples = samples;
+  settings.walk.seed = seed;
+  return mean_of(render(medium, camera, Lights(ConstantEnvironment(Spectrum(1.0F))), settings)
+                     .film.to_image());
+}
+
+FilmMean render_furnace(const std::string& world, uint32_t samples, uint64_t seed) {
+  const std::string text =
+      kUnlimited + film(8) +
+      "LookAt 0.2 0.1 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 7\nWorldBegin\n"
+      "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" +
+      world;
+  return mean_of(render_text(text, {.samples = samples, .seed = seed}).image);
+}
+
+/// A small dense core that glows in a thin box, and fills the picture: the guide leads paths to it.
+FilmMean core_furnace(uint32_t samples, uint64_t seed) {
+  std::string voxels;
+  for (int i = 0; i < 512; ++i) {
+    const auto is_middle = [](int place) { return place == 3 || place == 4; };
+    voxels += is_middle(i % 8) && is_middle(i / 8 % 8) && is_middle(i / 64) ? "8 " : "0.02 ";
+  }
+  const std::string medium =
+      R"(MakeNamedMedium "core" "string type" "uniformgrid" "point3 p0" [ -1 -1 -1 ] )"
+      R"("point3 p1" [ 1 1 1 ] "rgb sigma_a" [ 1 1 1 ] "rgb sigma_s" [ 2 2 2 ] )"
+      R"("rgb Le" [ 1 1 1 ] "integer nx" 8 "integer ny" 8 "integer nz" 8 "float density" [ )" +
+      voxels + "]\n";
+  return render_furnace(medium + medium_box("core", Vec3d(-1), Vec3d(1)), samples, seed);
+}
+
+FilmMean surface_furnace(uint32_t samples, uint64_t seed) {
+  return render_furnace(
+      "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\nShape \"sphere\" \"float radius\" 2\n",
+      samples, seed);
+}
+
+struct Case {
+  const char* name;
+  Furnace furnace;
+  float Planted::*factor;
+};
+
+class PathMutant : public ::testing::TestWithParam<Case> {};
+
+TEST_P(PathMutant, IsNoticed) {
+  const Case& test = GetParam();
+  const auto render = [&](float factor, uint32_t samples, uint64_t seed) {
+    planted = {};
+    planted.*test.factor = factor;
+    const FilmMean result = test.furnace(samples, seed);
+    planted = {};
+    return result;
+  };
+  // With the same random numbers their difference is known well after few paths.
+  constexpr uint32_t kPilot = 64;
+  const FilmMean honest = render(1, kPilot, 1);
+  const FilmMean wrong = render(kPathError, kPilot, 1);
+  const double shift = wrong.mean - honest.mean;
+  ASSERT_NE(shift, 0);
+  const double times = std::pow(kWantedPathShift * wrong.error / shift, 2);
+  const auto samples = static_cast<uint32_t>(std::max(64.0, std::ceil(times * kPilot)));
+  ASSERT_LT(samples, 25'000U) << "hardly matters";
+  const auto z = [](const FilmMean& found) { return std::abs(found.mean - 1) / found.error; };
+  EXPECT_GT(z(render(kPathError, samples, 2)), kClearly) << samples << " samples";
+  EXPECT_LT(z(render(1, std::max(kPilot, samples / 4), 2)), 4) << samples << " samples";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, PathMutant,
+    ::testing::Values(Case{"VolumeRoulette", volume_furnace, &Planted::roulette},
+                      Case{"VolumeLightShare", volume_furnace, &Planted::light_share},
+                      Case{"SceneRoulette", core_furnace, &Planted::roulette},
+                      Case{"SceneLightShare", core_furnace, &Planted::light_share},
+                      Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
+                      Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace freepath::testing

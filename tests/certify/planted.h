@@ -1,0 +1,17 @@
+#pragma once
+/// @file Errors that copies of sources have planted in them (CMakeLists.txt says where).
+
+namespace freepath::testing {
+
+/// Factors in the copies; 1 plants nothing.
+struct Planted {
+  float roulette = 1;        ///< On what survives Russian roulette.
+  float light_share = 1;     ///< On what next-event estimation in media is multiplied by.
+  float surface_share = 1;   ///< The same at surfaces.
+  float emission_guide = 1;  ///< On what directions of the emission guide are multiplied by.
+  float order = 1;           ///< On terms of a series above order zero, or on the whole series.
+};
+
+inline Planted planted;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+}  // namespace freepath::testing
