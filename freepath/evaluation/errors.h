@@ -34,7 +34,9 @@ enum class BiasVerdict {
 std::string_view to_string(BiasVerdict verdict);
 
 /// How many standard errors means lie apart, of the whole picture and of its blocks. Pixels that
-/// one of the two has no samples of are left out.
+/// one of the two has no samples of are left out. Of the variances of a sample that both pictures
+/// state the larger one counts, for both, where their numbers of samples are known: so that scores
+/// of means of few rare and bright samples are no larger than normal ones.
 struct BiasTest {
   /// Edge of a block [pixels]; the last ones of a row and a column take what is left.
   static constexpr int kBlock = 16;

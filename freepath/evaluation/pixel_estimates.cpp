@@ -79,7 +79,8 @@ PixelEstimates estimates_of(const Image& image, const std::string& name, bool& v
          i / 3 / image.width);
   }
   estimates.samples = copy_channel(image, "samples");
-  if (estimates.samples.empty()) estimates.samples.assign(image.pixel_count(), 1.0F);
+  estimates.knows_samples = !estimates.samples.empty();
+  if (!estimates.knows_samples) estimates.samples.assign(image.pixel_count(), 1.0F);
   estimates.lookups = copy_channel(image, "lookups");
   return estimates;
 }

@@ -18,8 +18,9 @@ struct PixelEstimates {
   std::optional<RgbChromaticities> chromaticities = {};
   std::vector<float> mean = {};      ///< Three a pixel.
   std::vector<float> variance = {};  ///< Of the means; three a pixel.
-  std::vector<float> samples = {};   ///< One a pixel.
-  std::vector<float> lookups = {};   ///< Of a path, on average; one a pixel, or none.
+  std::vector<float> samples = {};   ///< One a pixel; 1 where they are not known.
+  bool knows_samples = true;
+  std::vector<float> lookups = {};  ///< Of a path, on average; one a pixel, or none.
 
   std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
 };

@@ -10,6 +10,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/evaluation/heat_map.h"
+#include "freepath/evaluation/interval.h"
 #include "freepath/evaluation/pixel_estimates.h"
 #include "tests/statistics.h"
 
@@ -48,17 +49,82 @@ TEST(SquaredError, IsThatOfThePictureAlone) {
 }
 
 TEST(BiasTest, HasStandardNormalScores) {
-  const BiasTest test = test_bias(noisy(1, 0.1), noisy(2, 0.2));
+  // Samples of both vary alike.
+  const auto test_of = [](uint64_t seed) {
+    return test_bias(noisy(2 * seed, 0.1, 16), noisy(2 * seed + 1, 0.2, 4));
+  };
+  const BiasTest test = test_of(0);
   EXPECT_EQ(test.blocks_across, 5);
   EXPECT_EQ(test.blocks_down, 3);  // the last row of blocks has 18 rows of pixels
   EXPECT_EQ(test.tests(), 3U + 3 * 15);
   testing::RunningStatistics squares;
   for (uint64_t seed = 0; seed < 30; ++seed) {
-    for (const float z : test_bias(noisy(2 * seed, 0.1), noisy(2 * seed + 1, 0.2)).block_z) {
-      squares.add(z * z);
-    }
+    for (const float z : test_of(seed).block_z) squares.add(z * z);
   }
   EXPECT_TRUE(testing::check_mean("z²", squares, 1, {.largest_relative_error = 0.05}));
+}
+
+/// A picture of 2 x 2 blocks with few bright samples among dim ones, each pixel's mean and variance
+/// from its own samples.
+PixelEstimates sparse(uint64_t seed, int samples, double factor) {
+  constexpr int kSize = 2 * BiasTest::kBlock;
+  PixelEstimates estimates{.width = kSize, .height = kSize};
+  for (uint32_t pixel = 0; pixel < kSize * kSize; ++pixel) {
+    RandomStream random(seed, pixel, 0, 0);
+    double sum = 0;
+    double squares = 0;
+    for (int i = 0; i < samples; ++i) {
+      double value = 0.1 * random.uniform();
+      if (random.uniform() < 0.003F) value += random.exponential();
+      value *= factor;
+      sum += value;
+      squares += value * value;
+    }
+    const double mean = sum / samples;
+    const double variance = (squares / samples - mean * mean) / (samples - 1);
+    for (int channel = 0; channel < 3; ++channel) {
+      estimates.mean.push_back(static_cast<float>(mean));
+      estimates.variance.push_back(static_cast<float>(variance));
+    }
+  }
+  estimates.samples.assign(estimates.pixel_count(), static_cast<float>(samples));
+  return estimates;
+}
+
+// Two equal methods at few samples, six of a block's two thousand bright. One report in a thousand
+// may raise an alarm; with each picture's own variance alone, ten of these 600 do, by z up to 5.3.
+TEST(BiasTest, RaisesNoFalseAlarmsAtFewSamples) {
+  constexpr int kReports = 600;
+  int alarms = 0;
+  int naive = 0;
+  for (uint64_t report = 0; report < kReports; ++report) {
+    const PixelEstimates picture = sparse(2 * report, 8, 1);
+    PixelEstimates reference = sparse(2 * report + 1, 64, 1);
+    const auto fails = [&] {
+      const BiasTest test = test_bias(picture, reference);
+      return test.verdict(family_wise_threshold(1e-3, test.tests())) == BiasVerdict::kFails;
+    };
+    alarms += fails() ? 1 : 0;
+    reference.knows_samples = false;  // so that each states its own
+    naive += fails() ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 3);
+  EXPECT_GE(naive, 6);
+}
+
+// ... and still finds a bias of 2 % once there are samples enough, by means of 8 standard errors
+// and more.
+TEST(BiasTest, FindsTwoPercentAmongRareSamples) {
+  for (uint64_t seed = 0; seed < 2; ++seed) {
+    const BiasTest test = test_bias(sparse(2 * seed, 1000, 1.02), sparse(2 * seed + 1, 2000, 1));
+    EXPECT_EQ(test.verdict(family_wise_threshold(1e-3, test.tests())), BiasVerdict::kFails);
+  }
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    PixelEstimates picture = noisy(2 * seed, 0.05);
+    for (float& value : picture.mean) value *= 1.01F;
+    const BiasTest test = test_bias(picture, noisy(2 * seed + 1, 0.05));
+    EXPECT_EQ(test.verdict(family_wise_threshold(1e-3, test.tests())), BiasVerdict::kFails) << seed;
+  }
 }
 
 TEST(BiasTest, FindsABlockThatIsOff) {
