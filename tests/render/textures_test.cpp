@@ -17,6 +17,11 @@
 namespace freepath::testing {
 namespace {
 
+std::shared_ptr<const TextureImage> read_texture_image(const std::string& path,
+                                                       const ImageEncoding& encoding = {}) {
+  return texture_image(read_image(path), path, encoding);
+}
+
 SurfacePoint at(float u, float v) {
   SurfacePoint point;
   point.u = u;

@@ -157,9 +157,8 @@ float TextureImage::value(float s, float t, ImageWrap wrap) const {
   return (texel.values[0] + texel.values[1] + texel.values[2]) * (1.0F / 3.0F);
 }
 
-std::shared_ptr<const TextureImage> read_texture_image(const std::string& path,
-                                                       const ImageEncoding& encoding) {
-  const Image image = in_srgb(read_image(path));
+std::shared_ptr<const TextureImage> texture_image(const Image& image, const std::string& path,
+                                                  const ImageEncoding& encoding) {
   const std::vector<int> kept = kept_channels(image, path);
   const bool encoded = holds_encoded_integers(path);
   const bool linearised = was_linearised(image);

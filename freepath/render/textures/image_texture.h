@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "freepath/base/vector.h"
+#include "freepath/io/image.h"
 
 namespace freepath {
 
@@ -57,10 +58,12 @@ class TextureImage {
   std::vector<float> values_;
 };
 
-/// Reads an image for textures. An alpha of 1 everywhere is left out.
+/// What textures look up of an image in sRGB: RGB, grey, or with an alpha that isn't 1 everywhere.
+/// @param image its values finite
+/// @param path of the file that it was read from
 /// @throws Error that names the file
-std::shared_ptr<const TextureImage> read_texture_image(const std::string& path,
-                                                       const ImageEncoding& encoding = {});
+std::shared_ptr<const TextureImage> texture_image(const Image& image, const std::string& path,
+                                                  const ImageEncoding& encoding = {});
 
 /// Whether only files with this extension hold encoded integers.
 bool holds_encoded_integers(const std::string& path);

@@ -288,8 +288,9 @@ std::shared_ptr<const TextureImage> TextureBuilder::image(const ParameterList& l
   const std::string path = file_of(context_, list, "filename").string();
   std::shared_ptr<const TextureImage>& found = images_[{path, encoding.kind, encoding.gamma}];
   if (!found) {
-    found = at_location(list.location_of("filename"),
-                        [&] { return read_texture_image(path, encoding); });
+    const SourceLocation& location = list.location_of("filename");
+    const Image image = read_scene_image(context_, path, location);
+    found = at_location(location, [&] { return texture_image(image, path, encoding); });
   }
   return found;
 }
