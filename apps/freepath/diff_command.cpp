@@ -15,6 +15,7 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 
@@ -229,8 +230,8 @@ Difference compare(const DiffOptions& options) {
   }
   const std::vector<std::string> names = chosen_channels(options, *a.image);
   if (!b.image && b.constant.size() != 1 && b.constant.size() != names.size()) {
-    fail("{} has {} values, but {} channels are compared: {}", b.name, b.constant.size(),
-         names.size(), fmt::join(names, ", "));
+    fail("{} has {}, but {} compared: {}", b.name, counted(b.constant.size(), "value"),
+         counted(names.size(), "channel is", "channels are"), fmt::join(names, ", "));
   }
   std::vector<ChannelView> views_a;
   std::vector<ChannelView> views_b;
@@ -310,7 +311,7 @@ void print_table(const Difference& difference) {
   print("\n{} of {}x{} pixels compared\n", difference.compared(), difference.width,
         difference.height);
   if (difference.non_finite.empty()) return;
-  print("not finite, left out: {} pixels:", difference.non_finite.size());
+  print("not finite, left out: {}:", counted(difference.non_finite.size(), "pixel"));
   for (std::size_t i = 0; i < std::min(kNamedPixels, difference.non_finite.size()); ++i) {
     print(" {}", difference.place(difference.non_finite[i]));
   }
@@ -342,7 +343,7 @@ bool within_limits(const DiffOptions& options, const Difference& difference) {
     }
   }
   if ((options.max_relative_mse || options.max_z) && !difference.non_finite.empty()) {
-    exceeded(fmt::format("{} pixels are not finite", difference.non_finite.size()));
+    exceeded(counted(difference.non_finite.size(), "pixel is not finite", "pixels are not finite"));
   }
   return within;
 }

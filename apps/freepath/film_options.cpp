@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/freepath/parse.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 
 namespace freepath::program {
@@ -19,8 +20,8 @@ namespace {
 Crop parse_crop(const std::string& text) {
   const std::vector<double> numbers = parse_numbers(text, "--crop");
   if (numbers.size() != 4) {
-    fail("--crop: '{}' has {} values; give X0,Y0,X1,Y1, the last two of which are outside", text,
-         numbers.size());
+    fail("--crop: '{}' has {}; give X0,Y0,X1,Y1, the last two of which are outside", text,
+         counted(numbers.size(), "value"));
   }
   const Crop crop{numbers[0], numbers[1], numbers[2], numbers[3],
                   text.find('.') != std::string::npos};

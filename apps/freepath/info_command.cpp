@@ -13,6 +13,7 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/io/volume.h"
 #include "freepath/media/walk_part.h"
@@ -217,18 +218,19 @@ std::string grid_text(const Described& grid) {
                                     info.active_min.y, info.active_min.z, info.active_max.x,
                                     info.active_max.y, info.active_max.z, size.x, size.y, size.z));
     row("range", ranges_text(info));
-    row("active", fmt::format("{} voxels, {} constant tiles among them", info.active_voxels,
-                              info.active_tiles));
+    row("active", fmt::format("{}, {} among them", counted(info.active_voxels, "voxel"),
+                              counted(info.active_tiles, "constant tile")));
     if (info.inactive_voxels > 0) {
-      row("inactive",
-          fmt::format("{} voxels that are not 0 and count as they are", info.inactive_voxels));
+      row("inactive", counted(info.inactive_voxels, "voxel that is not 0 and counts as it is",
+                              "voxels that are not 0 and count as they are"));
     }
   }
   row("in the file", size_text(static_cast<double>(info.stored_bytes)));
   if (!grid.loaded.empty()) {
     const Bricks bricks = bricks_of(grid.loaded);
-    row("in memory", fmt::format("{}, {} bricks of 8 x 8 x 8 voxels",
-                                 size_text(static_cast<double>(bricks.bytes)), bricks.count));
+    row("in memory",
+        fmt::format("{}, {} of 8 x 8 x 8 voxels", size_text(static_cast<double>(bricks.bytes)),
+                    counted(bricks.count, "brick")));
     const SuperVoxelFacts cells = super_voxel_facts(grid.loaded);
     row("super-voxels", cells.reason.empty() ? cells_text(cells) : "none: " + cells.reason);
     for (std::size_t i = 0; i < cells.channels.size(); ++i) {

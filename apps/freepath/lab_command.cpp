@@ -16,6 +16,7 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/report_folder.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/evaluation/lab.h"
@@ -174,7 +175,8 @@ void run(const LabCommandOptions& options) {
   for (const LabFile& file : files) folder.write(file.name, file.content);
   print_table(result);
   folder.finish();
-  print("{} files in {}: open {}\n", files.size(), options.folder, folder.file("report.html"));
+  print("{} in {}: open {}\n", counted(files.size(), "file"), options.folder,
+        folder.file("report.html"));
 }
 
 }  // namespace

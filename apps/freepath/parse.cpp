@@ -109,7 +109,7 @@ void warn_if_biased(const std::string& tracker) {
   const std::string name = parse_method(tracker, tracker_infos()).name;
   for (const MethodInfo& info : tracker_infos()) {
     if (info.name != name || !info.biased) continue;
-    warn("tracker {} is biased: {}", name, info.unbiased);
+    warn("the tracker {} is biased: {}", name, info.unbiased);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "apps/freepath/parse.h"
 #include "apps/freepath/render_scene.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/transport/auto_tracker.h"
 
@@ -90,7 +91,9 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
                   "Edge of a super-voxel [voxels]: 4, 8, 16, 32, 64, or 0 for automatic")
       ->capture_default_str()
       ->group("Method");
-  command.add_option("--max-scatterings", o.max_scatterings, "Ends paths; biased [no limit]")
+  command
+      .add_option("--max-scatterings", o.max_scatterings,
+                  "Ends paths, whose light is missing then [no limit; of a scene its maxdepth]")
       ->check(CLI::PositiveNumber)
       ->group("Method");
 }
@@ -164,9 +167,9 @@ CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
   const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
   if (numbers.size() != 3 && numbers.size() != 6) {
     fail(
-        "--look-at: '{}' has {} values; give the camera's position and perhaps the point it looks "
+        "--look-at: '{}' has {}; give the camera's position and perhaps the point it looks "
         "at: X,Y,Z or X,Y,Z,ATX,ATY,ATZ",
-        options.look_at, numbers.size());
+        options.look_at, counted(numbers.size(), "value"));
   }
   camera.from = Vec3d(numbers[0], numbers[1], numbers[2]);
   if (numbers.size() == 6) camera.at = Vec3d(numbers[3], numbers[4], numbers[5]);

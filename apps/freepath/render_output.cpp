@@ -14,6 +14,7 @@
 #include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 #include "freepath/io/aside_file.h"
@@ -110,6 +111,8 @@ nlohmann::json statistics_json(const RenderResult& result, const RenderReport& r
                {"most_samples", result.most_samples},
                {"pixels_without_samples", result.pixels_without_samples},
                {"overflows", result.overflows},
+               {"cut_paths", result.cut_paths},
+               {"cut_share", result.cut_share},
                {"seconds",
                 {{"load", report.seconds_load},
                  {"build", report.seconds_build},
@@ -133,12 +136,12 @@ void print_counts(const std::string& method, const char* unit, const WalkStatist
     return static_cast<double>(count) / static_cast<double>(counts.rays);
   };
   tell(
-      "{}: {} {}s, each {:.2f} lookups, {:.2f} real, {:.2f} null and {:.2f} control "
-      "collisions, {:.2f} super-voxel steps; largest weight {:.4g}, {} negative weights, {} "
-      "bound violations\n",
-      method, counts.rays, unit, each(counts.lookups), each(counts.real_collisions),
+      "{}: {}, each {:.2f} lookups, {:.2f} real, {:.2f} null and {:.2f} control "
+      "collisions, {:.2f} super-voxel steps; largest weight {:.4g}, {}, {}\n",
+      method, counted(counts.rays, unit), each(counts.lookups), each(counts.real_collisions),
       each(counts.null_collisions), each(counts.control_collisions), each(counts.super_voxel_steps),
-      counts.largest_weight, counts.negative_weights, counts.bound_violations);
+      counts.largest_weight, counted(counts.negative_weights, "negative weight"),
+      counted(counts.bound_violations, "bound violation"));
 }
 
 /// Keeps a picture that could not be written where it should be; says where.
@@ -200,13 +203,25 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
   }
 }
 
-void print_warnings(const RenderResult& result) {
+void print_warnings(const RenderResult& result, const RenderReport& report) {
+  constexpr double kMeasurable = 0.005;
+  if (result.cut_share >= kMeasurable) {
+    const uint64_t limit = report.settings.max_scatterings;
+    const uint64_t more = std::max<uint64_t>(100, 10 * limit);
+    tell(
+        "freepath: note: {1:.2g} % of the paths ended at the limit of {2}, with {3:.2g} % of all "
+        "weight: about as much light may be missing. Give a higher limit: --max-scatterings {0}, "
+        "or in the scene Integrator \"volpath\" \"integer maxdepth\" {0}\n",
+        more,
+        100 * static_cast<double>(result.cut_paths) /
+            static_cast<double>(std::max<uint64_t>(result.paths, 1)),
+        counted(limit, "scattering"), 100 * result.cut_share);
+  }
   if (result.pixels_without_samples > 0) {
-    warn(
-        "{} of {} pixels have no sample, for want of time; they are black "
-        "with alpha 0",
-        result.pixels_without_samples,
-        static_cast<std::size_t>(result.film.width()) * result.film.height());
+    warn("{} of {} pixels {} no sample, for want of time: black with alpha 0",
+         result.pixels_without_samples,
+         static_cast<std::size_t>(result.film.width()) * result.film.height(),
+         result.pixels_without_samples == 1 ? "has" : "have");
   }
 }
 
@@ -220,23 +235,23 @@ void require_no_overflows(const RenderResult& result) {
 }
 
 std::string samples_text(const RenderResult& result) {
-  if (result.most_samples == result.samples) return fmt::format("{}", result.samples);
-  return fmt::format("{} to {}", result.samples, result.most_samples);
+  if (result.most_samples == result.samples) return counted(result.samples, "sample");
+  return fmt::format("{} to {} samples", result.samples, result.most_samples);
 }
 
 void print_summary(const std::vector<std::string>& files, const RenderResult& result,
                    const RenderReport& report) {
   const std::string samples = samples_text(result);
-  if (result.interrupted) tell("interrupted after {} samples per pixel\n", samples);
-  tell("{} samples per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n", samples,
+  if (result.interrupted) tell("interrupted after {} per pixel\n", samples);
+  tell("{} per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n", samples,
        clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
        report.seconds_load, report.seconds_build, report.seconds_render);
-  tell("{} paths, {:.2f} lookups each\n", result.paths,
+  tell("{}, {:.2f} lookups each\n", counted(result.paths, "path"),
        static_cast<double>(result.statistics().lookups) /
            static_cast<double>(std::max<uint64_t>(result.paths, 1)));
   print_counts(report.settings.walk.tracker, "flight", result.free_paths);
   print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
-  print_warnings(result);
+  print_warnings(result, report);
   for (const std::string& file : files) tell("wrote {}\n", file);
   require_no_overflows(result);
 }

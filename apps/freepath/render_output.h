@@ -75,7 +75,7 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
                            const std::vector<std::string>& volumes);
 
 /// Tells on standard error what makes a picture less than it should be.
-void print_warnings(const RenderResult& result);
+void print_warnings(const RenderResult& result, const RenderReport& report);
 
 /// Fails, once all is written, where paths were lost.
 /// @throws Error that says how many, and which pixels' variance is infinite

@@ -103,10 +103,10 @@ void print_frame(std::size_t index, std::size_t count, const PictureFiles& files
     if (!written.empty()) written += ", ";
     written += output;
   }
-  tell("frame {} ({} of {}): {}{} samples per pixel in {}, wrote {}\n", *files.frame, index + 1,
-       count, result.interrupted ? "interrupted after " : "", samples_text(result),
+  tell("frame {} ({} of {}): {}{} per pixel in {}, wrote {}\n", *files.frame, index + 1, count,
+       result.interrupted ? "interrupted after " : "", samples_text(result),
        clock_text(report.seconds_load + report.seconds_build + report.seconds_render), written);
-  print_warnings(result);
+  print_warnings(result, report);
   require_no_overflows(result);
 }
 

@@ -8,6 +8,7 @@
 
 #include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/media/phase/parse_phase_function.h"
 
@@ -26,8 +27,8 @@ const Value* value_for(std::size_t volume, std::size_t volumes, const std::vecto
   if (values.empty()) return nullptr;
   if (values.size() == 1) return values.data();
   if (values.size() == volumes) return &values[volume];
-  fail("{}: it is given {} times for {} {}; give it once, or once for each volume in their order",
-       option, values.size(), volumes, volumes == 1 ? "volume" : "volumes");
+  fail("{}: it is given {} for {}; give it once, or once for each volume in their order", option,
+       counted(values.size(), "time"), counted(volumes, "volume"));
 }
 
 OpticalProperties read_optics(const VolumeOptions& options, std::size_t volume) {

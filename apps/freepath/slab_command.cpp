@@ -16,6 +16,7 @@
 #include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/render/slab.h"
@@ -140,8 +141,8 @@ void read_phases(const SlabOptions& options, std::vector<SlabLayer>& layers) {
         "--phase", [&] { return std::make_shared<PhaseFunction>(parse_phase_function(text)); }));
   }
   if (phases.size() != 1 && phases.size() != layers.size()) {
-    fail("--phase: it is given {} times for {} layers; give it once, or once for each layer",
-         phases.size(), layers.size());
+    fail("--phase: it is given {} for {}; give it once, or once for each layer",
+         counted(phases.size(), "time"), counted(layers.size(), "layer"));
   }
   for (std::size_t i = 0; i < layers.size(); ++i) {
     layers[i].phase = phases[phases.size() == 1 ? 0 : i];
@@ -215,7 +216,8 @@ void print_table(const SlabResult& result) {
   const auto row = [&](const char* name, const SlabEstimate& estimate) {
     constexpr double kFixed = 1e-3;  // below, six decimals say too little
     if (estimate.upper) {
-      print("{:<15}  < {:.2g}  (95 %; none of {} paths)\n", name, *estimate.upper, result.paths);
+      print("{:<15}  < {:.2g}  (95 %; none of {})\n", name, *estimate.upper,
+            counted(result.paths, "path"));
     } else if (estimate.mean != 0 && std::abs(estimate.mean) < kFixed) {
       print("{:<15}{:>10.4e}  +- {:.1e}\n", name, estimate.mean, estimate.error);
     } else {
@@ -226,7 +228,7 @@ void print_table(const SlabResult& result) {
   row("transmittance", result.transmittance);
   row("  unscattered", result.unscattered);
   row("absorptance", absorptance_of(result));
-  print("{} paths, tracker {}\n", result.paths, result.tracker);
+  print("{}, tracker {}\n", counted(result.paths, "path"), result.tracker);
   if (!result.tracker_reason.empty()) {
     print("auto: {}, since {}\n", result.tracker, result.tracker_reason);
   }

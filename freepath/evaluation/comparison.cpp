@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/evaluation/flip.h"
 #include "freepath/evaluation/process_time.h"
@@ -345,13 +346,13 @@ Interval ConfigurationResult::over_runs(
 Comparison compare(const Subject& subject, const ComparisonSettings& settings,
                    const ComparisonProgressFunction& progress) {
   if (settings.configurations.empty()) fail("nothing to compare: no methods are given");
-  if (settings.repeats < 1) fail("nothing to compare: {} repeats", settings.repeats);
+  if (settings.repeats < 1) fail("nothing to compare: {}", counted(settings.repeats, "repeat"));
   if (settings.time <= 0 && settings.samples == 0) {
     fail("nothing to compare: neither a time nor samples are given");
   }
   if (settings.samples > 0 && settings.samples < 2U * settings.repeats) {
-    fail("{} samples for {} repeats: each needs two at least, to know its variance",
-         settings.samples, settings.repeats);
+    fail("{} for {}: each needs two at least, to know its variance",
+         counted(settings.samples, "sample"), counted(settings.repeats, "repeat"));
   }
   return Experiment(subject, settings, progress).run();
 }

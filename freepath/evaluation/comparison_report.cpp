@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "freepath/base/counted.h"
 #include "freepath/evaluation/comparison_charts.h"
 #include "freepath/evaluation/comparison_figures.h"
 #include "freepath/evaluation/heat_map.h"
@@ -112,9 +113,9 @@ PageTable table_of(const Comparison& comparison, bool errors) {
     }
   }
   table.caption = fmt::format(
-      "Means of {} runs; below them the interval that holds the true value with a probability of "
+      "Means of {}; below them the interval that holds the true value with a probability of "
       "{:.0f} %, given the reference.",
-      comparison.configurations.front().runs.size(), 100 * kConfidence);
+      counted(comparison.configurations.front().runs.size(), "run"), 100 * kConfidence);
   return table;
 }
 
@@ -218,17 +219,17 @@ void add_maps(const Comparison& comparison, Page& page) {
 std::string method_text(const Comparison& comparison) {
   const ConfigurationResult& baseline = comparison.configurations[comparison.baseline];
   return fmt::format(
-      "Each method was run {} times with seeds of its own. A round runs all methods, beginning "
+      "Each method was run {} with seeds of its own. A round runs all methods, beginning "
       "with another one each time, so that what slows the machine down meets all alike; "
       "efficiencies, 1/(MSE · CPU time), are relative to {} in the same round, and their intervals "
       "are "
       "Student's, of the rounds' logarithms. MSE is stated less the reference's own variance, so "
       "it estimates that of the method alone. The bias test compares all runs of a method "
       "together with the reference, the variances of both included: the means of the channels "
-      "and of blocks of 16×16 pixels. {} tests in all; for a false alarm in a share of {:g} of all "
+      "and of blocks of 16×16 pixels. {} in all; for a false alarm in a share of {:g} of all "
       "reports, |z| may reach {:.2f}.",
-      baseline.runs.size(), baseline.name, comparison.tests, comparison.level,
-      comparison.threshold);
+      counted(baseline.runs.size(), "time"), baseline.name, counted(comparison.tests, "test"),
+      comparison.level, comparison.threshold);
 }
 
 }  // namespace
@@ -280,9 +281,9 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
     for (const ComparisonRun& run : result.runs) overflows += run.overflows;
     if (overflows == 0) continue;
     findings.push_back(
-        fmt::format("The weights of {} paths of {} left the range of float and count as 0: its "
+        fmt::format("The weights of {} of {} left the range of float and count as 0: its "
                     "pictures are not to be trusted.",
-                    overflows, result.name));
+                    counted(overflows, "path"), result.name));
   }
   for (const Reference& reference : comparison.references) {
     if (reference.variance_known) continue;

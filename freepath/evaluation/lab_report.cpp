@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "freepath/base/counted.h"
 #include "freepath/evaluation/lab_figures.h"
 #include "freepath/evaluation/lab_numbers.h"
 #include "freepath/report/page.h"
@@ -218,9 +219,10 @@ void add_setting(const LabFindings& findings, double level, Page& page,
 Page first_page(const LabResult& result) {
   Page page;
   page.title = "Free paths in one dimension";
-  page.subtitle = fmt::format(
-      "{} paths a tracker, seed {}, {} absorption", result.options.paths, result.options.seed,
-      result.options.absorption == Absorption::kAnalog ? "analog" : "weighted");
+  page.subtitle =
+      fmt::format("{} a tracker, seed {}, {} absorption", counted(result.options.paths, "path"),
+                  result.options.seed,
+                  result.options.absorption == Absorption::kAnalog ? "analog" : "weighted");
   page.blocks.emplace_back(
       PageText{"Each setting is a medium that varies along x alone, and one ray through it. Its "
                "exact curves "
@@ -228,7 +230,7 @@ Page first_page(const LabResult& result) {
                "that comes "
                "out. Every tracker is compared with them."});
   page.blocks.emplace_back(PageText{fmt::format(
-      "{} comparisons of unbiased trackers count. A tracker differs where one has a p below "
+      "Comparisons of unbiased trackers: {}. A tracker differs where one has a p below "
       "{:.2g}, "
       "so that all of them together raise one false alarm in {:.0f} reports. Comparisons of events "
       "that are too rare, or of weights that spread too widely for a mean to be normal, do not "

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string>
 
+#include "freepath/base/counted.h"
 #include "freepath/evaluation/comparison_report.h"
 
 namespace freepath {
@@ -20,7 +21,7 @@ std::string machine_text(const RenderSettings& settings) {
   const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
   Simd simd = settings.walk.simd;
   if (simd == Simd::kBest) simd = available_simd().front();
-  return fmt::format("{}, {} threads, {}", processor, threads, to_string(simd));
+  return fmt::format("{}, {}, {}", processor, counted(threads, "thread"), to_string(simd));
 }
 
 }  // namespace freepath

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 #include "freepath/io/content_digest.h"
@@ -35,8 +36,9 @@ Reference read_reference(const std::string& file, const Subject& subject) {
   const auto& samples = reference.estimates.samples;
   const auto without = std::count(samples.begin(), samples.end(), 0.0F);
   if (without > 0) {
-    fail("{}: {} pixels of the reference have no sample; render it again, with more time", file,
-         without);
+    fail("{}: {}; render it again, with more time", file,
+         counted(without, "pixel of the reference has no sample",
+                 "pixels of the reference have no sample"));
   }
   const auto is_infinite = [](float variance) { return !std::isfinite(variance); };
   const auto& variance = reference.estimates.variance;
@@ -89,8 +91,8 @@ Reference make_reference(const Subject& subject, const ReferencePlan& plan,
          configuration.tracker);
   }
   reference.origin =
-      fmt::format("made with {} and {}, {} samples per pixel in {:.1f} s", configuration.tracker,
-                  configuration.transmittance, result.samples, result.seconds);
+      fmt::format("made with {} and {}, {} per pixel in {:.1f} s", configuration.tracker,
+                  configuration.transmittance, counted(result.samples, "sample"), result.seconds);
   return reference;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 
 namespace freepath {
@@ -35,10 +36,10 @@ std::string mend_invalid_pixels(Image& image, const std::string& name, InvalidPo
   if (policy == InvalidPolicy::kError) {
     fail("{}: {}; repair the image, or have such values taken as 0 (--invalid zero)", name, place);
   }
-  return fmt::format(
-      "{}: {} pixels with values that are NaN or infinite were taken as 0; the first: "
-      "{}",
-      name, count, place);
+  return fmt::format("{}: {}; the first: {}", name,
+                     counted(count, "pixel with values that are NaN or infinite was taken as 0",
+                             "pixels with values that are NaN or infinite were taken as 0"),
+                     place);
 }
 
 }  // namespace freepath

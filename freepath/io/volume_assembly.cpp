@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/memory_budget.h"
 
@@ -258,13 +259,17 @@ LoadedField FieldAssembly::finish(std::string name, const Matrix4d& index_to_wor
   }
   if (scan.invalid_voxels > 0) {
     loaded.warnings.push_back(fmt::format(
-        "{}: {} values that are NaN, infinite or out of the range of float were taken as 0; the "
-        "first: {}",
-        where_, scan.invalid_voxels, bad_voxel(*scan.invalid)));
+        "{}: {}; the first: {}", where_,
+        counted(scan.invalid_voxels,
+                "value that is NaN, infinite or out of the range of float was taken as 0",
+                "values that are NaN, infinite or out of the range of float were taken as 0"),
+        bad_voxel(*scan.invalid)));
   }
   if (scan.negative_voxels > 0) {
     loaded.warnings.push_back(
-        fmt::format("{}: {} negative densities were taken as 0", where_, scan.negative_voxels));
+        fmt::format("{}: {}", where_,
+                    counted(scan.negative_voxels, "negative density was taken as 0",
+                            "negative densities were taken as 0")));
   }
   loaded.field = {std::move(name), std::move(*builder_).finish(), index_to_world};
   return loaded;

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <utility>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/threads.h"
 #include "freepath/render/deadline.h"
@@ -188,13 +189,17 @@ void finish_result(PassRenderer<Wavefront>& passes, const RenderSettings& settin
   const PathWavefront::Counts counts = passes.counts();
   result.paths = counts.paths;
   result.overflows = counts.overflows;
+  result.cut_paths = counts.cut_paths;
+  result.cut_share = static_cast<double>(counts.cut_weight) * PathWavefront::Counts::kWeightUnit /
+                     static_cast<double>(std::max<uint64_t>(counts.paths, 1));
   result.free_paths = counts.free_paths;
   result.shadow_rays = counts.shadow_rays;
   const Film::NonFinite non_finite = result.film.non_finite_samples();
   if (non_finite.samples > 0) {
     const auto width = static_cast<std::size_t>(result.film.width());
-    fail("internal error: {} samples are not finite, the first in pixel ({}, {}); please report it",
-         non_finite.samples, non_finite.first_pixel % width, non_finite.first_pixel / width);
+    fail("internal error: {}, the first in pixel ({}, {}); please report it",
+         counted(non_finite.samples, "sample is not finite", "samples are not finite"),
+         non_finite.first_pixel % width, non_finite.first_pixel / width);
   }
 }
 

@@ -92,6 +92,7 @@ bool PathWavefront::trace_channel(const PathJob& job, int channel,
   std::size_t next = 0;
   std::size_t active = 0;
   job_counts_.paths += total;
+  carries_one_channel_ = channel >= 0;
   while (true) {
     rays_.resize(setup_.slots);
     while (active < setup_.slots && next < total) start_path(job, next++, active++, channel);
@@ -217,7 +218,13 @@ void PathWavefront::escape(Path& path, const Vec3f& direction) {
 bool PathWavefront::scatter(Path& path, std::size_t slot) {
   if (layers_.on()) layers_.scattering(path.result, path.bounce, path.radiance);
   const uint32_t scattering = path.bounce++;
-  if (path.bounce > setup_.max_scatterings) return false;
+  if (path.bounce > setup_.max_scatterings) {
+    // A path of one channel has no weight in the others.
+    float sum = 0;
+    for (int channel = 0; channel < kChannels; ++channel) sum += path.throughput[channel];
+    job_counts_.cut(carries_one_channel_ ? sum : sum / kChannels);
+    return false;
+  }
   RandomStream random(setup_.seed, rays_.pixel[slot], rays_.sample[slot],
                       stream_number(StreamPurpose::kScatter, scattering));
   const float throughput = largest_magnitude(path.throughput);

@@ -1,6 +1,7 @@
 #pragma once
 /// @file A wavefront of paths: all paths of a stretch of pixels, traced together.
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -64,12 +65,25 @@ class PathWavefront {
     /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
     /// not to be trusted. Only rates that are no bound can do that.
     uint64_t overflows = 0;
+    /// Paths that the limit of scatterings ended, and the weight that they still had: the mean of
+    /// their channels, in units of kWeightUnit, so that sums don't depend on their order.
+    uint64_t cut_paths = 0, cut_weight = 0;
+    static constexpr double kWeightUnit = 0x1p-20;
+
+    /// Counts a path that the limit ends.
+    void cut(float weight) {
+      constexpr double kMost = 1e6;
+      ++cut_paths;
+      cut_weight += static_cast<uint64_t>(std::clamp(double{weight}, 0.0, kMost) / kWeightUnit);
+    }
 
     void merge(const Counts& other) {
       free_paths.merge(other.free_paths);
       shadow_rays.merge(other.shadow_rays);
       paths += other.paths;
       overflows += other.overflows;
+      cut_paths += other.cut_paths;
+      cut_weight += other.cut_weight;
     }
   };
   const Counts& counts() const { return counts_; }
@@ -118,6 +132,7 @@ class PathWavefront {
 
   const PathSetup& setup_;
   bool emits_;                         // whether the medium does
+  bool carries_one_channel_ = false;   // whether the paths in flight do
   std::vector<PhaseFunction> phases_;  // of the components
   std::vector<Spectrum> albedos_;      // of the components
   std::vector<Path> paths_in_flight_;

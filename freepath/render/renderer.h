@@ -56,6 +56,11 @@ struct RenderResult {
   std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
   /// Paths whose weight left the range of float: their pixels have an infinite variance.
   uint64_t overflows = 0;
+  /// Paths that the limit of scatterings ended.
+  uint64_t cut_paths = 0;
+  /// The weight that they still had, over the number of all paths: the share of light that is
+  /// missing where as much comes from everywhere.
+  double cut_share = 0;
   double seconds = 0;
   bool interrupted = false;
 

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 
 namespace freepath {
@@ -64,7 +65,8 @@ LinearSpectrum::LinearSpectrum(std::vector<double> wavelengths, std::vector<doub
                                OutsideSamples outside) {
   if (wavelengths.empty()) fail("a sampled spectrum needs at least one wavelength and value");
   if (wavelengths.size() != values.size()) {
-    fail("a sampled spectrum has {} wavelengths but {} values", wavelengths.size(), values.size());
+    fail("a sampled spectrum has {} but {}", counted(wavelengths.size(), "wavelength"),
+         counted(values.size(), "value"));
   }
   for (std::size_t i = 0; i < wavelengths.size(); ++i) {
     if (!std::isfinite(wavelengths[i]) || !std::isfinite(values[i])) {

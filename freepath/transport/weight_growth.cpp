@@ -8,6 +8,7 @@
 #include <limits>
 #include <string_view>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 
 namespace freepath {
@@ -171,7 +172,8 @@ void require_bounded_weights(const WeightGrowth& growth, uint32_t max_scattering
   const bool limits = std::isfinite(growth.per_flight);
   const auto most = std::floor(std::log(kLargestGrowth) / std::log(growth.per_flight)) - 1;
   fail("{}{}; the variance of the picture would be infinite", growth.reason,
-       limits && most >= 1 ? fmt::format(", or at most {} scatterings (maxdepth)", most) : "");
+       limits && most >= 1 ? fmt::format(", or at most {} (maxdepth)", counted(most, "scattering"))
+                           : "");
 }
 
 std::string weights_in_paths(const MethodInfo& info) {

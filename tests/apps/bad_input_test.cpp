@@ -173,7 +173,7 @@ TEST_F(BadInputTest, DensitiesThatAreNone) {
   const Outcome mended = run("render nan.vdb" + rest);
   EXPECT_EQ(mended.status, 0) << mended;
   EXPECT_NE(
-      mended.messages.find("freepath: warning: nan.vdb: grid \"density\": 1 values that are NaN"),
+      mended.messages.find("freepath: warning: nan.vdb: grid \"density\": 1 value that is NaN"),
       std::string::npos)
       << mended;
   EXPECT_NE(mended.messages.find("the first: voxel (1, -2, 3) is NaN"), std::string::npos)
@@ -215,10 +215,9 @@ TEST_F(BadInputTest, EnvironmentsThatAreNone) {
   const Outcome mended =
       run("render ball.vdb --environment nan.exr -o picture.exr --size 8x8 --spp 1");
   EXPECT_EQ(mended.status, 0) << mended;
-  EXPECT_NE(
-      mended.messages.find("nan.exr: 1 pixels with values that are NaN or infinite were taken "
-                           "as 0; the first: pixel (5, 3) is NaN"),
-      std::string::npos)
+  EXPECT_NE(mended.messages.find("nan.exr: 1 pixel with values that are NaN or infinite was taken "
+                                 "as 0; the first: pixel (5, 3) is NaN"),
+            std::string::npos)
       << mended;
 }
 

@@ -257,6 +257,19 @@ TEST_F(RenderTest, TimeEndsIt) {
   }
 }
 
+TEST_F(RenderTest, ALimitOfScatteringsThatMattersIsTold) {
+  const std::string all = "render ball.vdb -o picture.exr --spp 1 --size 32x32 --albedo 1";
+  const Outcome limited = run(all + " --max-scatterings 1 --stats stats.json");
+  EXPECT_EQ(limited.status, 0) << limited;
+  EXPECT_NE(limited.messages.find("1 sample per pixel in "), std::string::npos) << limited;
+  EXPECT_NE(limited.messages.find("note: "), std::string::npos) << limited;
+  EXPECT_NE(limited.messages.find("at the limit of 1 scattering,"), std::string::npos) << limited;
+  EXPECT_NE(limited.messages.find("--max-scatterings 100"), std::string::npos) << limited;
+  EXPECT_GT(read_json("stats.json")["cut_share"].get<double>(), 0.005);
+  const Outcome whole = run(all);
+  EXPECT_EQ(whole.messages.find("note: "), std::string::npos) << whole;
+}
+
 /// Options under which paths that meet the ball take minutes.
 constexpr const char* kThick = " --albedo 1 --density-scale 1e5 ";
 

@@ -227,6 +227,27 @@ TEST(Renderer, ChromaticFurnaceIsWhiteInEveryChannel) {
   EXPECT_EQ(result.paths, 3U * 512 * 32 * 32);
 }
 
+// Without a scattering what is cut is what does not pass: A of the picture.
+TEST(Renderer, TellsTheWeightThatTheLimitCuts) {
+  for (const Spectrum& extinction : {Spectrum(2.0F), Spectrum(1.0F, 2.0F, 3.0F)}) {
+    const Medium medium({cloud(Spectrum(0.0F), extinction, 0)});
+    RenderSettings settings = settings_of(16);
+    settings.max_scatterings = 0;
+    const RenderResult result =
+        render(medium, camera_for(medium, 8, 8), constant_light(1), settings);
+    const Image image = result.film.to_image();
+    const int alpha = *find_channel(image, "A");
+    double sum = 0;
+    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+      sum += image.values[i * image.channels.size() + alpha];
+    }
+    EXPECT_GT(result.cut_paths, 0U);
+    EXPECT_NEAR(result.cut_share, sum / static_cast<double>(image.pixel_count()), 1e-4);
+    settings.max_scatterings = UINT32_MAX;
+    EXPECT_EQ(render(medium, camera_for(medium, 2, 2), constant_light(1), settings).cut_paths, 0U);
+  }
+}
+
 // Grey extinction under a coloured albedo: one path carries the weights of all channels.
 TEST(Renderer, ColouredAlbedoAgreesWithEachChannelAlone) {
   const Spectrum albedo(0.95F, 0.6F, 0.2F);

@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 
 namespace freepath {
@@ -18,10 +20,10 @@ bool is_finite(const Vec3f& v) {
 bool is_finite(const Vec2f& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
 template <class Values>
-void check_vertices(const Values& values, std::size_t positions, const char* what) {
+void check_vertices(const Values& values, std::size_t positions, std::string_view what) {
   if (!values.empty() && values.size() != positions) {
-    fail("a mesh of {} positions has {} {}; give one for each position, or none", positions,
-         values.size(), what);
+    fail("a mesh of {} has {}; give one for each position, or none", counted(positions, "position"),
+         counted(values.size(), what.substr(0, what.size() - 1)));
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_finite(values[i])) fail("the {} of vertex {} are not finite; mend the mesh", what, i);

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/scene/build/build_media.h"
@@ -49,8 +50,8 @@ std::optional<ScreenWindow> screen_window(const ParameterList& list) {
   if (window.empty()) return {};
   if (window.size() != 4) {
     fail_at(list.location_of("screenwindow"),
-            "'screenwindow' has {} values; it needs x minimum, x maximum, y minimum, y maximum",
-            window.size());
+            "'screenwindow' has {}; it needs x minimum, x maximum, y minimum, y maximum",
+            counted(window.size(), "value"));
   }
   return ScreenWindow{window[0], window[1], window[2], window[3]};
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
 #include "freepath/io/volume.h"
@@ -215,8 +216,8 @@ class MediumReader {
 
   void check_count(std::string_view name, std::size_t count, std::size_t expected) const {
     if (count == expected) return;
-    fail_at(list_.location_of(name), "'{}' has {} values, but nx · ny · nz is {}", name, count,
-            expected);
+    fail_at(list_.location_of(name), "'{}' has {}, but nx · ny · nz is {}", name,
+            counted(count, "value"), expected);
   }
 
   std::shared_ptr<const Field> voxels(const Layout& layout, std::string_view name) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "freepath/base/counted.h"
 #include "freepath/scene/pbrt/nearest_name.h"
 
 namespace freepath {
@@ -290,8 +291,8 @@ std::shared_ptr<const SampledSpectrum> parse_spectrum_file(Lexer& lexer) {
     pairs.push_back(token.number);
   }
   if (pairs.empty() || pairs.size() % 2 != 0) {
-    fail_at(start, "a spectrum file expects pairs of wavelength and value, has {} numbers",
-            pairs.size());
+    fail_at(start, "a spectrum file expects pairs of wavelength and value, has {}",
+            counted(pairs.size(), "number"));
   }
   return make_samples(pairs, start);
 }

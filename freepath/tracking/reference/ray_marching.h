@@ -27,7 +27,7 @@ struct RayMarching {
       "ray-marching",
       "steps of fixed length, jittered: what people do today, kept for comparison",
       "interpolation 'nearest' or 'trilinear'",
-      "never: biased, less so for smaller steps",
+      "its bias shrinks with its steps (step=LENGTH)",
       "[Novak18, Sec. 4]",
       kOptions,
       /*chromatic=*/false,
