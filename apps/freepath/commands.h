@@ -2,11 +2,14 @@
 /// @file The subcommands of the program, one file each. Each function adds its subcommand, whose
 /// callback does the work and throws freepath::Error (or a CLI11 error) where it can't.
 
+#include <functional>
+
 #include <CLI/CLI.hpp>
 
 namespace freepath::program {
 
-void add_render_command(CLI::App& program);
+/// @param clock as of run()
+void add_render_command(CLI::App& program, const std::function<double()>& clock);
 void add_info_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_slab_command(CLI::App& program);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -69,12 +71,14 @@ struct RenderOptions {
   std::string tracker = "delta", transmittance = "ratio", interpolation = "stochastic";
   double exposure = 0;
   std::string view;
+  std::function<double()> clock;
 };
 
 RenderSettings read_settings(const RenderOptions& options) {
   RenderSettings settings = read_run_settings(options.picture);
   settings.samples = options.samples;
   settings.time_limit = options.time_limit;
+  settings.clock = options.clock;
   if (options.samples == 0 && options.time_limit == 0) settings.samples = 64;
   WalkSettings& walk = settings.walk;
   walk.tracker = read_tracker(options.tracker, "--tracker");
@@ -198,10 +202,11 @@ void add_method_options(CLI::App& command, RenderOptions& o) {
 
 }  // namespace
 
-void add_render_command(CLI::App& program) {
+void add_render_command(CLI::App& program, const std::function<double()>& clock) {
   CLI::App* command = program.add_subcommand("render", "Render volume files to pictures");
   command->footer(kRenderFooter);
   const auto options = std::make_shared<RenderOptions>();
+  options->clock = clock;
   add_output_options(*command, *options);
   add_film_options(*command, options->film);
   add_method_options(*command, *options);

@@ -82,7 +82,7 @@ int end_parsing(const CLI::App& program, const CLI::ParseError& error) {
   return status;
 }
 
-int run_command(int argc, const char* const* argv) {
+int run_command(int argc, const char* const* argv, const std::function<double()>& clock) {
   set_command_line(argc, argv);
   CLI::App program{"Unbiased free paths and transmittance in heterogeneous participating media"};
   program.set_version_flag("--version", version());
@@ -90,7 +90,7 @@ int run_command(int argc, const char* const* argv) {
   program.failure_message(usage_message);
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   program.footer("freepath COMMAND --help explains a command, with examples.");
-  add_render_command(program);
+  add_render_command(program, clock);
   add_info_command(program);
   add_generate_command(program);
   add_slab_command(program);
@@ -116,9 +116,9 @@ int run_command(int argc, const char* const* argv) {
 
 }  // namespace
 
-int run(int argc, const char* const* argv) {
+int run(int argc, const char* const* argv, const std::function<double()>& clock) {
   prepare_console();
-  return finish_console(run_command(argc, argv));
+  return finish_console(run_command(argc, argv, clock));
 }
 
 }  // namespace freepath::program

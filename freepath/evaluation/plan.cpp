@@ -47,13 +47,13 @@ struct PilotTally {
 /// @return false if the caller wished to stop
 bool run_round(const Subject& subject, const PilotSettings& settings, uint64_t seed,
                const ProgressFunction& progress, PilotResult& result, PilotTally& tally) {
-  const double cpu_before = process_cpu_seconds();
+  const double cpu_before = settings.cpu_clock();
   try {
     const RenderResult rendered =
         subject.render(settings_of(settings, result.candidate, seed), progress);
     if (rendered.interrupted) return false;
     // Of a small picture's passes some threads go without work at the end, of a large one's not.
-    const double cpu_seconds = process_cpu_seconds() - cpu_before;
+    const double cpu_seconds = settings.cpu_clock() - cpu_before;
     const int threads = Threads(settings.render.threads).count();
     tally.cpu_seconds += cpu_seconds;
     tally.samples += uint64_t{rendered.samples} * rendered.film.width() * rendered.film.height();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "freepath/evaluation/interval.h"
+#include "freepath/evaluation/process_time.h"
 #include "freepath/evaluation/subject.h"
 
 namespace freepath {
@@ -25,6 +26,8 @@ struct PilotSettings {
   int rounds = 3;  ///< At least 2: intervals come from them.
   uint64_t seed = 0;
   RenderSettings render;  ///< All but samples, time and methods.
+  /// Tells the work done so far, by which pictures are measured [s].
+  std::function<double()> cpu_clock = process_cpu_seconds;
 };
 
 /// What a candidate did.

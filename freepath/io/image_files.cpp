@@ -10,6 +10,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/input_file.h"
 #include "freepath/io/aside_file.h"
+#include "freepath/io/exr_header.h"
 #include "freepath/io/image.h"
 #include "freepath/io/image_aside.h"
 #include "freepath/io/image_codec.h"
@@ -43,6 +44,7 @@ void linearise(Image& image, int alpha_channel) {
 
 Image read_image(const std::string& path) {
   const InputFile file(path, "an image");  // OpenImageIO would wait for a pipe
+  io::check_exr_header(file);
   Image image;
   bool srgb = false;
   int alpha = -1;

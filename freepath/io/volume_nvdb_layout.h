@@ -36,11 +36,12 @@ class NodeBuffer {
  public:
   std::span<std::byte> resize(std::size_t bytes) {
     words_.resize((bytes + sizeof(NodeWords) - 1) / sizeof(NodeWords));
-    return {words_.data()->bytes, bytes};
+    return {reinterpret_cast<std::byte*>(words_.data()), bytes};
   }
   template <class Node>
   const Node& node(std::size_t offset) const {
-    return *reinterpret_cast<const Node*>(words_.data()->bytes + offset);
+    return *reinterpret_cast<const Node*>(reinterpret_cast<const std::byte*>(words_.data()) +
+                                          offset);
   }
 
  private:

@@ -51,7 +51,7 @@ class PassRenderer {
         film_(film),
         threads_(settings.threads),
         wavefronts_(std::move(make_wavefront)),
-        start_(Clock::now()),
+        start_(time()),
         deadline_(settings.whole_passes ? 0 : settings.time_limit) {}
 
   void run() {
@@ -86,11 +86,13 @@ class PassRenderer {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  static double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+  /// Of a clock that began anywhere [s].
+  double time() const {
+    if (settings_.clock) return settings_.clock();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
   }
+  double seconds_since(double start) const { return time() - start; }
 
   uint32_t next_pass(uint32_t samples, double seconds_per_sample, bool timed, double now) const {
     double wanted = kSecondsPerPass / std::max(seconds_per_sample, 1e-9);
@@ -124,7 +126,7 @@ class PassRenderer {
       const std::size_t first = next_pixel.fetch_add(wanted);
       if (first >= pixels) return;
       const std::size_t count = std::min(wanted, pixels - first);
-      const Clock::time_point began = Clock::now();
+      const double began = time();
       if (!wavefront.trace({first, count, samples_done_, samples}, film_, pass_is_over)) return;
       const double paths_traced = static_cast<double>(count) * samples;
       paths_done_ += paths_traced / static_cast<double>(pixels);
@@ -167,7 +169,7 @@ class PassRenderer {
   Film& film_;
   Threads threads_;
   tbb::enumerable_thread_specific<Wavefront> wavefronts_;
-  Clock::time_point start_;
+  double start_;
   Deadline deadline_;
   std::atomic<bool> over_ = false;
   std::atomic<double> paths_done_ = 0;  // samples of each pixel, on average

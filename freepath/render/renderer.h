@@ -32,6 +32,9 @@ struct RenderSettings {
   WavelengthBuckets buckets = {};
   /// Renders a part alone, whose pixels are those of the whole picture.
   std::optional<Crop> crop = {};
+  /// Tells the time [s] since any moment, and is asked from any thread; empty: the system's steady
+  /// clock. A test can count time by it, whatever the machine does.
+  std::function<double()> clock = {};
   /// Called between passes, by the thread that renders, with what there is.
   std::function<void(const Film&)> on_pass = {};
   std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.

@@ -19,13 +19,13 @@ class FinishedRenderTest : public ProgramTest {
  protected:
   FinishedRenderTest() { write_cube(path("ball.vdb")); }
 
-  /// Renders until something is done to it, which is at the first sign of progress.
+  /// Renders until something is done to it, which is when every pixel has a sample.
   Outcome render_until(const std::string& outputs,
                        const std::function<void(int process)>& happen) const {
     bool happened = false;
-    return start_in_terminal(words("render ball.vdb --size 32x32 --time 600 " + outputs), folder_,
-                             [&](const std::string& text, int process) {
-                               if (happened || text.find("samples") == std::string::npos) return;
+    return start_in_terminal(words("render ball.vdb --size 32x32 --spp 1000000000 " + outputs),
+                             folder_, [&](const std::string& text, int process) {
+                               if (happened || samples_shown(text) < 2) return;
                                happened = true;
                                happen(process);
                              });

@@ -24,10 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 std::string read_text(const fs::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -70,7 +66,6 @@ void wait_for(pid_t process, Clock::time_point start, std::chrono::seconds allow
     meanwhile();
   }
   set_end(outcome, wait_status);
-  outcome.seconds = seconds_since(start);
 }
 
 /// A file for what the program says, outside the folder that it works in.
@@ -127,19 +122,18 @@ std::vector<std::string> words(const std::string& line) {
   return result;
 }
 
-Outcome call_program(const std::vector<std::string>& arguments, const fs::path& folder) {
+Outcome call_program(const std::vector<std::string>& arguments, const fs::path& folder,
+                     const std::function<double()>& clock) {
   std::vector<const char*> pointers{FREEPATH_PROGRAM};
   for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
   const fs::path before = fs::current_path();
   fs::current_path(folder);
   Outcome outcome;
-  const Clock::time_point begin = Clock::now();
   {
     const Capture output(STDOUT_FILENO, capture_file("output"), outcome.output);
     const Capture messages(STDERR_FILENO, capture_file("messages"), outcome.messages);
-    outcome.status = program::run(static_cast<int>(pointers.size()), pointers.data());
+    outcome.status = program::run(static_cast<int>(pointers.size()), pointers.data(), clock);
   }
-  outcome.seconds = seconds_since(begin);
   fs::current_path(before);
   return outcome;
 }
@@ -192,6 +186,13 @@ Outcome start_in_terminal(const std::vector<std::string>& arguments, const fs::p
   while (read_some(0)) continue;
   close(terminal);
   return outcome;
+}
+
+double samples_shown(const std::string& text) {
+  const std::size_t end = text.rfind(" samples  ");  // "12/64 samples  1.20 M samples/s"
+  if (end == std::string::npos || end == 0) return 0;
+  const std::size_t begin = text.rfind(' ', end - 1);
+  return std::atof(text.c_str() + (begin == std::string::npos ? 0 : begin + 1));
 }
 
 ProgramTest::ProgramTest() {

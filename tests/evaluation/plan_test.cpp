@@ -9,12 +9,13 @@
 
 #include "freepath/base/error.h"
 #include "freepath/evaluation/pixel_estimates.h"
-#include "freepath/evaluation/process_time.h"
+#include "tests/counted_clock.h"
 #include "tests/evaluation/small_subject.h"
 
 namespace freepath {
 namespace {
 
+using testing::counted_clock;
 using testing::small_subject;
 
 PilotCandidate candidate(const std::string& tracker) {
@@ -39,32 +40,36 @@ TEST(Pilots, TellWhatRefusesAndWhatIsBiased) {
 
 // Look-ups of a path are a property of method and medium: those of a longer rendering agree.
 TEST(Pilots, ForeseeLookupsAndNoise) {
-  const Subject subject = small_subject();
-  // On one thread, and in time that this process has worked, whatever else the machine does.
+  // Work is counted in look-ups of a microsecond each, whatever the machine does.
+  Subject subject = small_subject();
+  uint64_t looked_up = 0;
+  subject.render = [render = subject.render, &looked_up](const RenderSettings& settings,
+                                                         const ProgressFunction& progress) {
+    RenderResult result = render(settings, progress);
+    looked_up += result.statistics().lookups;
+    return result;
+  };
   PilotSettings pilots;
   pilots.render.threads = 1;
+  pilots.render.clock = counted_clock();
+  pilots.cpu_clock = [&looked_up] { return 1e-6 * static_cast<double>(looked_up); };
   const auto results =
       run_pilots(subject, {candidate("delta"), candidate("decomposition")}, pilots);
   RenderSettings settings;
   settings.samples = 256;
-  settings.threads = 1;
-  const double cpu_before = process_cpu_seconds();
-  const RenderResult rendered = subject.render(settings, {});
-  const double cpu_seconds = process_cpu_seconds() - cpu_before;
+  const RenderResult rendered = small_subject().render(settings, {});
   const double lookups =
       static_cast<double>(rendered.statistics().lookups) / (256.0 * subject.width * subject.height);
   EXPECT_NEAR(results[0].lookups_per_path / lookups, 1, 0.03);
   EXPECT_LT(results[1].lookups_per_path, results[0].lookups_per_path);
-  // Noise of that rendering, and the time foreseen to it. Times are the machine's: a factor of 4
-  // is far from what a wrong power of noise, time or samples would give, which is 100 or more.
+  // Noise of that rendering, and the time foreseen to it.
   const PixelEstimates picture = estimates_of(rendered.film);
   const auto mean = [](const std::vector<float>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
   const double noise = std::sqrt(mean(picture.variance)) / mean(picture.mean);
-  const double ratio = results[0].seconds_to(noise)->value / cpu_seconds;
-  EXPECT_GT(ratio, 0.25);
-  EXPECT_LT(ratio, 4);
+  const double seconds = 1e-6 * static_cast<double>(rendered.statistics().lookups);
+  EXPECT_NEAR(results[0].seconds_to(noise)->value / seconds, 1, 0.1);
   EXPECT_NEAR(results[0].seconds_to(noise / 10)->value / results[0].seconds_to(noise)->value, 100,
               1e-6);
 }

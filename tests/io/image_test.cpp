@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "freepath/base/error.h"
 #include "freepath/io/invalid_values.h"
@@ -190,6 +192,40 @@ TEST_F(ImageTest, AHeaderAloneCostsNothing) {
   // Small enough to be a file of one value: refused once nothing comes.
   std::ofstream(path("b.hdr")) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000 +X 2000\n";
   expect_message([&] { read_image(path("b.hdr")); }, "b.hdr: can't read");
+}
+
+/// Changes the bytes of a file behind the one place where a text stands.
+void change_behind(const std::string& file, std::string_view text, std::string_view bytes) {
+  std::ifstream input(file, std::ios::binary);
+  std::string content(std::istreambuf_iterator<char>(input), {});
+  const std::size_t at = content.find(text);
+  ASSERT_NE(at, std::string::npos);
+  content.replace(at + text.size(), bytes.size(), bytes);
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+// OpenEXR would take up to 2 GB for each.
+TEST_F(ImageTest, AttributesOfAnExrHaveTheSizesOfTheirTypes) {
+  using namespace std::string_view_literals;
+  Image image = numbered_image({"R", "G", "B"});
+  image.metadata = {{"note", std::string("text")}};
+  const auto expect_damaged = [&](std::string_view text, std::string_view bytes,
+                                  const std::string& message) {
+    write_exr(path("a.exr"), image);
+    change_behind(path("a.exr"), text, bytes);
+    expect_message([&] { read_image(path("a.exr")); }, "a.exr: the attribute " + message);
+  };
+  expect_damaged("note\0string\0"sv, "\x74\x72\x75\x65"sv,
+                 "note in its header is said to take 1702195828 bytes, but ");
+  expect_damaged("note\0string\0"sv, "\xFF\xFF\xFF\xFF"sv,
+                 "note in its header is said to take 4294967295 bytes, but ");
+  expect_damaged("dataWindow\0box2i\0"sv, "\x0F"sv, "dataWindow in its header is no box2i of 15 ");
+  expect_damaged("channels\0chlist\0"sv, "\x36"sv, "channels in its header is no chlist of 54 ");
+  // What has other types is taken for what it says: two texts, and a picture of 1000 x 1000.
+  expect_damaged("note\0"sv, "stringvector\0\x04\0\0\0\xFF\xFF\xFF\x7F"sv,
+                 "note in its header is no stringvector of 4 ");
+  expect_damaged("note\0"sv, "preview\0\x08\0\0\0\xE8\x03\0\0\xE8\x03\0\0"sv,
+                 "note in its header is no preview of 8 ");
 }
 
 // A chunk of rows is 2^20 values at most; each has to arrive in its place.

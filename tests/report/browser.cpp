@@ -69,7 +69,7 @@ Browser::Browser(std::string program, fs::path folder)
 void Browser::run(const std::string& address, const std::string& options,
                   const fs::path& output) const {
   const std::string command = fmt::format(
-      "timeout 60 {} --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage "
+      "timeout 300 {} --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage "
       "--hide-scrollbars --no-first-run --virtual-time-budget=4000 --user-data-dir={} {} {} "
       ">{} 2>{}",
       program_, quoted(folder_ / "profile"), options, quoted("file://" + address), quoted(output),

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ struct PictureOptions {
   uint64_t seed = 5;
   int threads = 0;
   std::size_t batch = 2048;
+  double time_limit = 0;               ///< [s] by the clock; 0: none.
+  std::function<double()> clock = {};  ///< RenderSettings::clock
 };
 
 /// A picture and its mean over the film.
@@ -53,6 +56,8 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.threads = options.threads;
   settings.buckets = built.picture.buckets;
   settings.batch = options.batch;
+  settings.time_limit = options.time_limit;
+  settings.clock = options.clock;
   settings.max_scatterings = built.picture.max_scatterings;
   settings.walk.seed = options.seed;
   settings.walk.tracker = standard_tracker(built.scene);

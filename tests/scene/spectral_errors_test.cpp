@@ -4,17 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 
+#include "tests/counted_clock.h"
 #include "tests/scene/rendered_scenes.h"
 
 namespace freepath::testing {
 namespace {
 
 /// A unit cube of something under a light, as seen by a small film, by independent samples.
-std::string lit_cube(const std::string& light, const std::string& medium) {
-  return film(8) + R"(
+std::string lit_cube(const std::string& light, const std::string& medium, int size = 8) {
+  return film(size) + R"(
     LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0
     Camera "perspective" "float fov" 20
     Sampler "independent"
@@ -26,15 +32,16 @@ std::string lit_cube(const std::string& light, const std::string& medium) {
 }
 
 /// Its walkers depend on wavelengths.
-std::string coloured_cloud() {
+std::string coloured_cloud(int size = 8) {
   return lit_cube(R"("rgb L" [ 0.4 0.7 1 ])",
-                  R"("rgb sigma_a" [ 0.1 0.4 0.9 ] "rgb sigma_s" [ 3 2 1 ])");
+                  R"("rgb sigma_a" [ 0.1 0.4 0.9 ] "rgb sigma_s" [ 3 2 1 ])", size);
 }
 
 /// All wavelengths share walkers, but what a path meets first takes its colour apart.
-std::string ball_in_fog() {
+std::string ball_in_fog(int size = 8) {
   return lit_cube(R"("spectrum L" "stdillum-F11")",
-                  R"("spectrum sigma_a" [ 300 0.5 900 0.5 ] "spectrum sigma_s" [ 300 3 900 3 ])") +
+                  R"("spectrum sigma_a" [ 300 0.5 900 0.5 ] "spectrum sigma_s" [ 300 3 900 3 ])",
+                  size) +
          R"(Material "diffuse" "rgb reflectance" [ 0.2 0.5 0.7 ]
             Translate 0.5 0.5 0.5 Shape "sphere" "float radius" 0.3)";
 }
@@ -72,7 +79,10 @@ void compare_twins(const Picture& a, const Picture& b, Spread& spread) {
   }
 }
 
-Spread spread_of(const std::string& text, uint32_t samples, int pictures) {
+/// @param options all but the seeds of pictures and what `begin` sets
+Spread spread_of(const std::string& text, PictureOptions options, int pictures,
+                 const std::function<void(int picture, PictureOptions&)>& begin = {},
+                 const std::function<void(const Picture&)>& end = {}) {
   Diagnostics diagnostics;
   const PbrtScene pbrt = parse(text, diagnostics);
   const BuiltScene built = build_scene(pbrt, diagnostics);
@@ -80,10 +90,12 @@ Spread spread_of(const std::string& text, uint32_t samples, int pictures) {
   spread.pictures = pictures;
   Picture last;
   for (int i = 0; i < pictures; ++i) {
-    const uint64_t seed = 1000 + static_cast<uint64_t>(i);
-    Picture picture =
-        picture_of(built, {.mode = ColorMode::kSpectral, .samples = samples, .seed = seed});
+    options.mode = ColorMode::kSpectral;
+    options.seed = 1000 + static_cast<uint64_t>(i);
+    if (begin) begin(i, options);
+    Picture picture = picture_of(built, options);
     expect_sound(picture);
+    if (end) end(picture);
     for (int c = 0; c < 3; ++c) {
       spread.means[c].add(picture.mean[c]);
       spread.stated[c] += picture.error[c] * picture.error[c] / pictures;
@@ -96,19 +108,64 @@ Spread spread_of(const std::string& text, uint32_t samples, int pictures) {
 
 /// Samples of a pixel stratify the spectrum, for which its variance does not allow: errors may be
 /// less than stated where noise of colour leads, but never more.
+void expect_not_more_than_stated(const Spread& spread) {
+  EXPECT_LT(spread.largest_z, 4.5);
+  for (int c = 0; c < 3; ++c) {
+    SCOPED_TRACE(c);
+    EXPECT_GT(spread.p_value(c), 1e-3) << spread.ratio(c);
+    EXPECT_GT(spread.ratio(c), 0.25);
+    // Of pixels; with 0.03 for what 63 times 64 of them leave to chance.
+    EXPECT_LT(spread.differences[c], 1.1 * spread.variances[c]);
+  }
+}
+
 TEST(SpectralErrors, OfMeansAreNotMoreThanStated) {
   for (const uint32_t samples : {3U, 16U}) {
     for (const std::string& text : {coloured_cloud(), ball_in_fog()}) {
-      const Spread spread = spread_of(text, samples, 64);
-      EXPECT_LT(spread.largest_z, 4.5);
-      for (int c = 0; c < 3; ++c) {
-        SCOPED_TRACE(c);
-        EXPECT_GT(spread.p_value(c), 1e-3) << spread.ratio(c) << " with " << samples;
-        EXPECT_GT(spread.ratio(c), 0.25) << samples;
-        // Of pixels; with 0.03 for what 63 times 64 of them leave to chance.
-        EXPECT_LT(spread.differences[c], 1.1 * spread.variances[c]) << samples;
-      }
+      SCOPED_TRACE(samples);
+      expect_not_more_than_stated(spread_of(text, {.samples = samples}, 64));
     }
+  }
+}
+
+/// A clock that goes on by a tick whenever it is asked, and by far more after so many ticks: the
+/// machine seems to stand still for a while.
+std::function<double()> jumping_clock(uint64_t ticks) {
+  const auto asked = std::make_shared<std::atomic<uint64_t>>(0);
+  return [asked, ticks] {
+    const uint64_t count = (*asked)++;
+    return kCountedTick * static_cast<double>(count) + (count < ticks ? 0 : 2);
+  };
+}
+
+/// The fewest and the most samples of a pixel.
+std::pair<float, float> samples_of(const Picture& picture) {
+  const int channel = *find_channel(picture.image, "samples");
+  std::pair<float, float> range(1e9F, 0);
+  for (int i = 0; i < picture.image.width * picture.image.height; ++i) {
+    const float samples =
+        picture.image.pixel(i % picture.image.width, i / picture.image.width)[channel];
+    range = {std::min(range.first, samples), std::max(range.second, samples)};
+  }
+  return range;
+}
+
+// Time ends pictures in the midst of a pass: some pixels have its samples, and others not.
+TEST(SpectralErrors, OfPicturesThatTimeEndsAreNotMoreThanStated) {
+  constexpr int kSize = 40;  // for several jobs in a pass
+  for (const std::string& text : {coloured_cloud(kSize), ball_in_fog(kSize)}) {
+    int broken_off = 0;
+    const auto begin = [](int picture, PictureOptions& options) {
+      options.clock = jumping_clock(110 + 2 * static_cast<uint64_t>(picture));
+    };
+    const auto end = [&](const Picture& picture) {
+      const auto [fewest, most] = samples_of(picture);
+      EXPECT_GE(fewest, 2);
+      broken_off += fewest < most ? 1 : 0;
+    };
+    const PictureOptions options{.samples = 0, .threads = 1, .time_limit = 1};
+    expect_not_more_than_stated(spread_of(text, options, 24, begin, end));
+    EXPECT_GT(broken_off, 8);
   }
 }
 
@@ -117,7 +174,7 @@ TEST(SpectralErrors, AreAsStatedWhereNoiseIsNotOfColour) {
   const Spread spread =
       spread_of(lit_cube(R"("rgb L" [ 0.4 0.7 1 ])",
                          R"("rgb sigma_a" [ 0.9 1 1.1 ] "rgb sigma_s" [ 9 9 9 ])"),
-                32, 64);
+                {.samples = 32}, 64);
   const int green = 1;
   EXPECT_GT(spread.p_value(green), 1e-3) << spread.ratio(green);
   EXPECT_LT(spread.p_value(green), 1 - 1e-3) << spread.ratio(green);
