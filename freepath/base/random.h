@@ -125,8 +125,8 @@ class RandomStream {
   }
 
  private:
-  /// The second word of the one drawn last.
-  constexpr uint32_t second() const {
+  /// The second word of the one drawn last: a function of its own, so that the usual way is short.
+  [[gnu::noinline]] constexpr uint32_t second() const {
     return philox({(block_ - 1) | kSecondWords, stream_, sample_, pixel_}, key_)[used_ - 1];
   }
 

@@ -104,15 +104,14 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
   }
   float begin = 0;
   MediaSet media = shadow.media;
-  BoundaryCrossings crossings;
   std::optional<RayPlace> last;  // which crossing came before
   while (true) {
-    if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings,
+    if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings_,
                                   last ? &*last : nullptr)) {
       shadow.radiance = Channels();
       return;
     }
-    for (const BoundaryCrossing& crossing : crossings.all()) {
+    for (const BoundaryCrossing& crossing : crossings_.all()) {
       // Those at one place are crossed as one: nothing lies between them.
       if (!last || !crossing.place.is_tied(*last)) {
         const auto end = static_cast<float>(crossing.place.t);
@@ -123,7 +122,7 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
       const PathShape& shape = scene_.shapes[crossing.shape];
       media.cross(shape.inside, shape.outside, crossing.enters);
     }
-    if (!crossings.overflowed()) break;
+    if (!crossings_.overflowed()) break;
   }
   add_segment(shadow, path, media, begin, shadow.end.distance);
 }

@@ -58,7 +58,8 @@ class ShadowTracer {
   WalkBatches batches_;
   FlightStream flights_;
   std::vector<Shadow> shadows_;
-  std::vector<TiedSurface> ties_;
+  std::vector<TiedSurface> ties_;  // of one ray, as the crossings
+  BoundaryCrossings crossings_;
 };
 
 }  // namespace freepath

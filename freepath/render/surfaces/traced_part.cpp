@@ -133,11 +133,27 @@ struct UserHits {
   std::span<const UserHit> all() const { return {hits.data(), count}; }
 };
 
-UserHits hits_of(const TracedPatches& mesh, uint32_t primitive, const LocalRay& ray) {
+/// Where on a ray it is worth while to look closer: what lies outside, no query takes.
+struct RayRange {
+  double begin = -std::numeric_limits<double>::infinity();
+  double end = std::numeric_limits<double>::infinity();
+
+  /// The part that a ray of Embree's has left; ties have their place in it.
+  RayRange(const SurfaceQuery& query, const RTCRay& ray) : begin(query.t_min), end(query.t_max) {
+    constexpr double kSinglePrecision = 1 + 0x1p-20;
+    if (query.kind == QueryKind::kNearest) end = std::min(end, ray.tfar * kSinglePrecision);
+  }
+  RayRange() = default;
+  bool contains(double t) const { return t > begin && t < end; }
+};
+
+UserHits hits_of(const TracedPatches& mesh, uint32_t primitive, const LocalRay& ray,
+                 const RayRange& range = {}) {
   const PatchRoots roots = mesh.patch(primitive).intersect(ray.origin, ray.direction);
   UserHits found;
   for (int i = 0; i < roots.count; ++i) {
     const PatchRoot& root = roots.root[i];
+    if (!range.contains(root.t)) continue;
     const Vec3d normal = mesh.normal(primitive, root.u, root.v);
     found.hits[found.count++] = {{root.t, normal, normal.dot(ray.direction)},
                                  static_cast<uint32_t>(i),
@@ -147,11 +163,12 @@ UserHits hits_of(const TracedPatches& mesh, uint32_t primitive, const LocalRay& 
   return found;
 }
 
-UserHits hits_of(const TracedQuadric& quadric, const LocalRay& ray) {
+UserHits hits_of(const TracedQuadric& quadric, const LocalRay& ray, const RayRange& range = {}) {
   const LocalRay object = quadric.to_object(ray);
   const QuadricRoots roots = quadric.quadric.intersect(object.origin, object.direction);
   UserHits found;
   for (int i = 0; i < roots.count; ++i) {
+    if (!range.contains(roots.t[i])) continue;
     const Vec3d gradient = quadric.quadric.gradient(object.origin + object.direction * roots.t[i]);
     const Vec3d normal =
         quadric.part_to_object.normal_back(quadric.is_reversed ? -gradient : gradient);
@@ -169,7 +186,7 @@ void meet_patch(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user,
   const auto& mesh = *static_cast<const TracedPatches*>(user);
   const SurfaceKey key{query.instance_of(query.context.instID[0]), geometry, primitive, 0};
   const LocalRay local = query.rule->local_ray(query.ray, key.instance);
-  offer(ray, hit, query, mesh, key, hits_of(mesh, primitive, local).all());
+  offer(ray, hit, query, mesh, key, hits_of(mesh, primitive, local, {query, ray}).all());
 }
 
 void meet_quadric(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* user,
@@ -177,7 +194,7 @@ void meet_quadric(RTCRay& ray, RTCHit* hit, SurfaceQuery& query, const void* use
   const TracedQuadric& quadric = (*static_cast<const std::vector<TracedQuadric>*>(user))[primitive];
   const SurfaceKey key{query.instance_of(query.context.instID[0]), geometry, primitive, 0};
   const LocalRay local = query.rule->local_ray(query.ray, key.instance);
-  offer(ray, hit, query, quadric, key, hits_of(quadric, local).all());
+  offer(ray, hit, query, quadric, key, hits_of(quadric, local, {query, ray}).all());
 }
 
 template <auto kMeet>
