@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 
 #include "freepath/base/error.h"
@@ -235,6 +237,36 @@ TEST(BuildErrors, InvalidVoxelsAreZeroWithAWarningOrRefusedAndEmptyGridsAreMedia
   EXPECT_NE(warning_of(InvalidPolicy::kError).find("it is empty"), std::string::npos);
 }
 
+TEST(BuildErrors, InvalidPixelsAreZeroWithAWarningOrRefused) {
+  const TemporaryFile file("odd.pfm");
+  {
+    std::ofstream pixels(file.path(), std::ios::binary);
+    pixels << "PF\n2 2\n-1\n";
+    std::array<float, 12> values{};
+    values[4] = std::numeric_limits<float>::infinity();  // of the last row, which comes first
+    values[9] = std::numeric_limits<float>::quiet_NaN();
+    pixels.write(reinterpret_cast<const char*>(values.data()), sizeof(values));
+  }
+  const std::string name = "\"string filename\" \"" + file.path().string() + "\"";
+  for (const std::string statement :
+       {"Texture \"t\" \"spectrum\" \"imagemap\" ", "Texture \"t\" \"float\" \"imagemap\" ",
+        "LightSource \"infinite\" ", "LightSource \"projection\" ", "LightSource \"goniometric\" ",
+        "AreaLightSource \"diffuse\" "}) {
+    SCOPED_TRACE(statement);
+    const std::string text = "WorldBegin\n" + statement + name + "\nShape \"sphere\"";
+    Diagnostics diagnostics;
+    build_scene(parse(text, diagnostics), diagnostics);
+    ASSERT_EQ(diagnostics.warnings().size(), 1U);
+    const std::string& warning = diagnostics.warnings().front();
+    EXPECT_EQ(warning.substr(0, 13), "scene.pbrt:2:") << warning;
+    EXPECT_NE(warning.find("2 pixels"), std::string::npos) << warning;
+    EXPECT_NE(warning.find("pixel (1, 0) is NaN"), std::string::npos) << warning;
+    EXPECT_THROW(
+        build_scene(parse(text, diagnostics), diagnostics, {.invalid = InvalidPolicy::kError}),
+        Error);
+  }
+}
+
 /// A scene of which one thing is said, but that is rendered.
 struct DoubtfulScene {
   const char* text;
@@ -275,9 +307,6 @@ const DoubtfulScene kDoubtful[] = {
     {"WorldBegin\nObjectBegin \"o\" AreaLightSource \"diffuse\"\nShape \"sphere\" ObjectEnd", "3:1",
      "stays dark"},
     {"WorldBegin\nShape \"sphere\" \"float radios\" 2", "2:16", "did you mean 'radius'?"},
-    {"WorldBegin\nShape \"sphere\" \"float alpha\" 0.5", "2:16", "'alpha' is left out"},
-    {"WorldBegin Texture \"a\" \"float\" \"constant\"\nShape \"sphere\" \"texture alpha\" \"a\"",
-     "2:16", "'alpha' is left out"},
     {"WorldBegin\nMaterial \"diffuse\" \"float roughness\" 2", "2:20", "'roughness'"},
     {"WorldBegin\nMaterial \"diffuse\" \"rgb reflectance\" [ 2 1 1 ]", "2:20", "clipped to 1"},
     {"WorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float G\" .5", "2:49",
@@ -304,7 +333,7 @@ TEST(BuildWarnings, NothingIsSaidOfWhatChangesNothing) {
         "Accelerator \"bvh\" \"integer maxnodeprims\" 4\nWorldBegin",
         "Integrator \"volpath\" \"string lightsampler\" \"power\"\nWorldBegin",
         "Integrator \"volpath\" \"string tracker\" \"auto\"\nWorldBegin",
-        R"(WorldBegin Shape "sphere" "float alpha" 1)",
+        R"(WorldBegin Shape "sphere" "float alpha" 1 Shape "sphere" "float alpha" 0.5)",
         R"(WorldBegin Attribute "shape" "float levels" 2 Shape "disk")"}) {
     Diagnostics diagnostics;
     build_scene(parse(text, diagnostics), diagnostics);

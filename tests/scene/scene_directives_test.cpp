@@ -230,5 +230,22 @@ TEST(SceneDirectives, ColorSpacesAreThoseWhereColoursStand) {
   }
 }
 
+// Within a sphere that reflects half: after two reflections a quarter is left, had the second been.
+TEST(SceneDirectives, LimitOfScatteringsTellsWhatItCuts) {
+  for (const ColorMode mode : kColorModes) {
+    Diagnostics diagnostics;
+    const BuiltScene built =
+        build_scene(parse("Integrator \"volpath\" \"integer maxdepth\" 1\n" + film(4) +
+                              "Camera \"perspective\" WorldBegin Material \"diffuse\" "
+                              "\"rgb reflectance\" [ .5 .5 .5 ] Shape \"sphere\"",
+                          diagnostics),
+                    diagnostics);
+    const RenderResult result =
+        render_scene(built.scene, mode, settings_of(built, {.mode = mode, .samples = 16}));
+    EXPECT_EQ(result.cut_paths, result.paths);
+    EXPECT_NEAR(result.cut_share, 0.25, 0.001);
+  }
+}
+
 }  // namespace
 }  // namespace freepath::testing

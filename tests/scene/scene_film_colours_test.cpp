@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
+#include "freepath/spectra/rgb_color_space.h"
 #include "tests/scene/twin_scenes.h"
 
 namespace freepath::testing {
@@ -106,6 +108,18 @@ TEST(FilmColours, FilesTellTheSpaceOrAreConverted) {
     EXPECT_EQ(eight_bits.pixel(1, 1)[1], 0);
     EXPECT_NEAR(eight_bits.pixel(1, 1)[2], 0.0847, 0.008);
   }
+  // The bytes: linear blue is 0.08466 by the matrices of SMPTE ST 2065-1 and IEC 61966-2-1 with no
+  // adaptation of white, as in pbrt-v4 (ConvertRGBColorSpace), which sRGB encodes as 82.1 of 255.
+  // Adapted by Bradford's responses from ACES' white (near D60) to D65 it would be 86.4.
+  Image exact{.width = 1, .height = 1, .channels = {"R", "G", "B"}, .values = {0.5F, 0.1F, 0.1F}};
+  const RgbColorSpace& aces = rgb_color_space("aces2065-1");
+  exact.chromaticities = RgbChromaticities{aces.primaries(), aces.white()};
+  const TemporaryFile png("exact.png");
+  write_png(png.path().string(), exact);
+  const Image read = read_image(png.path().string());
+  EXPECT_EQ(read.pixel(0, 0)[0], 1);
+  EXPECT_EQ(read.pixel(0, 0)[1], 0);
+  EXPECT_EQ(std::lround(255 * srgb_from_linear(read.pixel(0, 0)[2])), 82);
   EXPECT_FALSE(
       seen(sky(kFilmOfSky, "\"rgb L\" [ .5 .1 .1 ]"), ColorMode::kRgb).image.chromaticities);
 }

@@ -22,9 +22,12 @@ struct LightDraw {
   /// With the probability of choosing the light [1/sr]; of a light without extent that probability
   /// alone. With 0 the draw is to be dropped.
   float pdf = 0;
-  /// Of an area light, which of SceneLightsDescription::area_lights and SurfacePoint::primitive.
+  /// Of an area light, which of SceneLightsDescription::area_lights, and of the point
+  /// SurfacePoint's.
   struct Area {
     uint32_t light = 0, primitive = 0;
+    Vec3f normal{0, 0, 1};
+    float u = 0, v = 0;
   };
   std::optional<Area> area = {};
   /// No ray finds this light by chance, so that the draw has the whole weight.

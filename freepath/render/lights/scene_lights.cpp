@@ -219,7 +219,7 @@ LightDraw SceneLights::sample_within(const Vec3f& position, const SpectrumValues
   draw.radiance = radiance(part, point.normal, point.u, point.v, -draw.direction, values);
   draw.pdf = choice.probability * point.pdf;
   draw.delta = area.invisible;
-  draw.area = {part.area, index - area.first_part};
+  draw.area = {part.area, index - area.first_part, point.normal, point.u, point.v};
   return draw;
 }
 

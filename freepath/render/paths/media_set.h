@@ -1,6 +1,7 @@
 #pragma once
 /// @file The media that fill a place.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -58,6 +59,17 @@ class MediaSet {
     if (inside == outside) return;
     add(enters ? inside : outside, 1);
     add(enters ? outside : inside, -1);
+  }
+
+  /// Crosses a boundary that some rays go through unchanged (it has an alpha), so that one may
+  /// leave what it never entered: whatever was entered before, the one side is there afterwards and
+  /// the other is not, as in pbrt.
+  void cross_porous(MediumId inside, MediumId outside, bool enters) {
+    if (inside == outside) return;
+    const MediumId to = enters ? inside : outside;
+    const MediumId from = enters ? outside : inside;
+    add(from, -std::max(0, count(from)));
+    add(to, std::max(0, 1 - count(to)));
   }
 
   int32_t count(MediumId medium) const {

@@ -1,6 +1,7 @@
 #pragma once
 /// @file A scene as paths see it.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,6 +28,18 @@ struct PathShape {
   /// The media on both sides, as MediaSet::cross takes them. Where they are the same, nothing
   /// changes.
   MediumId inside = kVacuum, outside = kVacuum;
+  /// The share of it that is there, the same for all points or a texture; none: all of it. Where it
+  /// is not, it is neither a surface nor a light nor a boundary.
+  std::optional<FloatInput> alpha = {};
+
+  /// Crosses its boundary.
+  void cross(MediaSet& media, bool enters) const {
+    if (alpha) {
+      media.cross_porous(inside, outside, enters);
+    } else {
+      media.cross(inside, outside, enters);
+    }
+  }
 };
 
 /// How channels are made.
@@ -56,6 +69,14 @@ struct PathScene {
   /// Of each medium: whether no surface passes through its bounds and all of them are filled with
   /// it, so that flights that begin in them need not look for surfaces before they leave.
   std::vector<bool> is_clear;
+
+  /// The share of a shape that is there at a point of it, [0, 1].
+  float alpha_at(const SurfacePoint& point) const {
+    const std::optional<FloatInput>& alpha = shapes[point.shape].alpha;
+    if (!alpha) return 1;
+    const float value = textures.evaluate(*alpha, point);
+    return value > 0 ? std::min(value, 1.0F) : 0.0F;
+  }
 
   /// Whether a flight in a medium from this place need not look for surfaces.
   bool is_clear_at(MediumId medium, const Vec3f& position) const {

@@ -45,6 +45,7 @@ struct ScenePath {
   uint32_t pixel = 0;
   uint32_t sample_key = 0;  ///< Of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.
+  uint32_t turned_in = 0;   ///< The flight with which its direction began.
   uint32_t scatterings = 0;
   uint32_t result = 0;  ///< Place among the paths of the job's samples.
   int channel = -1;     ///< The one channel that it carries, or -1.

@@ -2,7 +2,10 @@
 
 #include "freepath/render/paths/scene_wavefront.h"
 
+#include "freepath/render/paths/alpha_chance.h"
+
 namespace freepath {
+
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
   const bool needs_spectrum = !spectra_.empty();
   if (!setup_.factory->sees_rgb() || path.is_coloured || needs_spectrum) return false;
@@ -37,12 +40,47 @@ int SceneWavefront::rank(uint32_t shape) const {
   return scene_.materials[*sides.material].transmits() ? 1 : 2;
 }
 
-SurfaceHit SceneWavefront::choose_surface(const ScenePath& path) {
-  SurfaceHit hit = *path.hit;
-  ties_.clear();
-  if (!hit.is_tied) return hit;
+void SceneWavefront::turn(ScenePath& path, const Vec3f& from, const Vec3f& origin,
+                          const Vec3f& direction) const {
+  path.turned_at = from;
+  go_on(path, origin, direction);
+  path.turned_in = path.flights;
+}
+
+std::optional<SurfaceHit> SceneWavefront::first_there(const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
-  surfaces.find_ties(path.origin, path.direction, hit, ties_);
+  const AlphaChance chance{setup_.seed, path.pixel, path.sample_key,
+                           stream_number(StreamPurpose::kWalk, path.turned_in)};
+  const auto is_there = [&](const SurfaceHit& hit) {
+    return chance.meets(hit.place.key, scene_.alpha_at(hit.point));
+  };
+  const auto is_missing = [&](const TiedSurface& tied) {
+    return scene_.shapes[tied.shape].alpha &&
+           !is_there(surfaces.describe(path.origin, path.direction, tied));
+  };
+  SurfaceHit hit = *path.hit;
+  while (true) {
+    ties_.clear();
+    if (hit.is_tied) surfaces.find_ties(path.origin, path.direction, hit, ties_);
+    std::erase_if(ties_, is_missing);
+    if (is_there(hit)) return hit;
+    if (ties_.empty()) return std::nullopt;
+    hit = surfaces.describe(path.origin, path.direction, ties_.front());
+  }
+}
+
+std::optional<SurfaceHit> SceneWavefront::choose_surface(const ScenePath& path) {
+  const Surfaces& surfaces = *scene_.surfaces;
+  SurfaceHit hit = *path.hit;
+  if (has_alpha_) {
+    const std::optional<SurfaceHit> there = first_there(path);
+    if (!there) return std::nullopt;
+    hit = *there;
+  } else {
+    ties_.clear();
+    if (hit.is_tied) surfaces.find_ties(path.origin, path.direction, hit, ties_);
+  }
+  if (ties_.empty()) return hit;
   Vec3f beyond = surfaces.offset_ray_origin(hit.point, path.direction);
   const auto take = [&](TiedSurface& tied) {
     const TiedSurface before{hit.place, hit.point.shape, !hit.from_inside};
@@ -74,7 +112,7 @@ SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const Su
                                                  const Vec3f& direction) const {
   Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.media};
   const auto cross = [&](uint32_t shape, bool enters) {
-    departure.media.cross(scene_.shapes[shape].inside, scene_.shapes[shape].outside, enters);
+    scene_.shapes[shape].cross(departure.media, enters);
   };
   const bool goes_through = (direction.dot(hit.point.normal) > 0) == hit.from_inside;
   if (goes_through) cross(hit.point.shape, !hit.from_inside);
@@ -101,6 +139,33 @@ ShadowEnd SceneWavefront::shadow_end(const LightDraw& light) const {
   return end;
 }
 
+LightDraw SceneWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                                     RandomStream& random) const {
+  const float u0 = random.uniform();
+  const float u1 = random.uniform();
+  const float u2 = random.uniform();
+  LightDraw light = scene_.lights->sample(position, spectra, u0, u1, u2);
+  if (!has_alpha_ || !light.area || light.area->light >= shapes_of_lights_.size()) return light;
+  // Paths meet the light with this chance, so that its mean is the same.
+  if (const std::optional<uint32_t> shape = shapes_of_lights_[light.area->light]) {
+    const LightDraw::Area& area = *light.area;
+    light.radiance *= scene_.alpha_at({.position = position + light.direction * light.distance,
+                                       .normal = area.normal,
+                                       .shading_normal = area.normal,
+                                       .dpdu = Vec3f(0),
+                                       .u = area.u,
+                                       .v = area.v,
+                                       .shape = *shape,
+                                       .primitive = area.primitive});
+  }
+  return light;
+}
+
+void SceneWavefront::pass_hole(ScenePath& path) {
+  if (path.scatterings == 0) path.distance += path.hit->t;
+  go_on(path, scene_.surfaces->offset_ray_origin(path.hit->point, path.direction), path.direction);
+}
+
 void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
   const Departure departure = depart(path, hit, path.direction);
   set_media(path, departure.media);
@@ -117,7 +182,12 @@ bool SceneWavefront::is_hole(const ScenePath& path, const SurfaceHit& hit,
 
 void SceneWavefront::meet_surface(std::size_t slot) {
   ScenePath& path = paths_[slot];
-  const SurfaceHit hit = choose_surface(path);
+  const std::optional<SurfaceHit> met = choose_surface(path);
+  if (!met) {
+    pass_hole(path);
+    return;
+  }
+  const SurfaceHit& hit = *met;
   const PathShape& shape = scene_.shapes[hit.point.shape];
   if (shape.light) {
     const bool in_rgb = sees_rgb(path);
@@ -137,8 +207,14 @@ void SceneWavefront::meet_surface(std::size_t slot) {
   scatter_at_surface(slot, hit);
 }
 
+void SceneWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
+  const int channels = path.colors->spectra.channels();
+  float sum = 0;
+  for (int c = 0; c < channels; ++c) sum += path.throughput[c] * albedo[c];
+  job_counts_.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
+}
+
 bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
-  if (path.scatterings > setup_.max_scatterings) return false;
   const float throughput = largest_magnitude(path.throughput);
   if (throughput >= setup_.roulette_threshold) return true;
   const float survival = throughput / setup_.roulette_threshold;
@@ -161,19 +237,21 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
     if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
     path.sample.alpha = 1;
   }
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
                       stream_number(StreamPurpose::kScatter, path.flights));
+  if (is_cut(path)) {
+    count_cut(path, material.albedo(hit.point, path.direction, context));
+    path.is_dead = true;
+    return;
+  }
   if (!survives(path, random)) {
     path.is_dead = true;
     return;
   }
-  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   const Vec3f position = hit.point.position;
   if (!material.is_specular() && !scene_.lights->is_dark()) {
-    const float u0 = random.uniform();
-    const float u1 = random.uniform();
-    const float u2 = random.uniform();
-    const LightDraw light = scene_.lights->sample(position, path.colors->spectra, u0, u1, u2);
+    const LightDraw light = draw_light(position, path.colors->spectra, random);
     if (light.pdf > 0) {
       const MaterialValue f =
           material.evaluate(hit.point, path.direction, light.direction, random, context);
@@ -195,10 +273,9 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
   path.is_coloured = true;  // equal at these wavelengths is not equal at all
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
-  path.turned_at = position;
   const Departure departure = depart(path, hit, next->direction);
   set_media(path, departure.media);
-  go_on(path, departure.origin, next->direction);
+  turn(path, position, departure.origin, next->direction);
 }
 
 void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
@@ -217,6 +294,11 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   }
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
                       stream_number(StreamPurpose::kScatter, path.flights));
+  if (is_cut(path)) {
+    count_cut(path, Channels(1));
+    path.is_dead = true;
+    return;
+  }
   if (!survives(path, random)) {
     path.is_dead = true;
     return;
@@ -224,12 +306,8 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   const Vec3f position = path.origin + path.direction * t;
   const PhaseFunction& phase = medium.phase(component);
   if (!scene_.lights->is_dark()) {
-    const float u0 = random.uniform();
-    const float u1 = random.uniform();
-    const float u2 = random.uniform();
     const bool in_rgb = sees_rgb(path);
-    const LightDraw light =
-        scene_.lights->sample(position, light_spectra(path, in_rgb), u0, u1, u2);
+    const LightDraw light = draw_light(position, light_spectra(path, in_rgb), random);
     if (light.pdf > 0) {
       // The phase function is its own density.
       const float value = phase.evaluate(path.direction, light.direction);
@@ -247,8 +325,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   const float u2 = random.uniform();
   const PhaseSample next = phase.sample(path.direction, u1, u2);
   path.pdf = next.pdf;
-  path.turned_at = position;
-  go_on(path, position, next.direction);
+  turn(path, position, position, next.direction);
   if (guide != nullptr) {
     path.emission_share = next.pdf / (next.pdf + guide->pdf(position, next.direction));
   }

@@ -32,10 +32,11 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
       scene_(*setup.scene),
       paths_(setup.slots),
       batches_(setup.slots, true),
-      shadows_(*setup.scene, *setup.factory, setup.slots),
+      shadows_(*setup.scene, *setup.factory, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
   camera_medium_ = setup.factory->medium_of(scene_.camera_media);
   for (uint32_t shape = 0; shape < scene_.shapes.size(); ++shape) {
+    has_alpha_ = has_alpha_ || scene_.shapes[shape].alpha;
     const std::optional<uint32_t> light = scene_.shapes[shape].light;
     if (!light) continue;
     if (*light >= shapes_of_lights_.size()) shapes_of_lights_.resize(*light + std::size_t{1});

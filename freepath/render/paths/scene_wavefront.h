@@ -71,13 +71,18 @@ class SceneWavefront {
   /// A path's throughput in the channels of these spectra.
   static Channels light_throughput(const ScenePath& path, bool in_rgb);
   void escape(ScenePath& path);
-  /// The surface that a path meets where its ray ends. Of several at the place an opaque one is
-  /// never passed over, nor a light; ties_ are the others.
-  SurfaceHit choose_surface(const ScenePath& path);
+  /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
+  /// opaque one is never passed over, nor a light; ties_ are the others.
+  std::optional<SurfaceHit> choose_surface(const ScenePath& path);
+  /// The first surface at the place where a ray ends that its alpha lets be there; ties_ are the
+  /// others that are.
+  std::optional<SurfaceHit> first_there(const ScenePath& path);
   /// Which of several surfaces at a place is met: the highest, and of equal ones the nearest.
   int rank(uint32_t shape) const;
   void meet_surface(std::size_t slot);
   void cross_boundary(ScenePath& path, const SurfaceHit& hit);
+  /// Goes on where the surface at which a ray ends is not there.
+  void pass_hole(ScenePath& path);
   void scatter_at_surface(std::size_t slot, const SurfaceHit& hit);
   /// Where a new ray starts at a surface, and the media that are there.
   struct Departure {
@@ -87,6 +92,9 @@ class SceneWavefront {
   Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction) const;
   void set_media(ScenePath& path, const MediaSet& media) const;
   ShadowEnd shadow_end(const LightDraw& light) const;
+  /// A light for a position; what its own alpha leaves of it.
+  LightDraw draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                       RandomStream& random) const;
   /// Whether a path goes on at a surface as if there were none.
   bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
   void scatter_in_medium(std::size_t slot, float t, std::size_t component);
@@ -97,9 +105,16 @@ class SceneWavefront {
   }
   void draw_emission(std::size_t slot, const EmissionGuide& guide, const Vec3f& position,
                      const PhaseFunction& phase, RandomStream& random);
+  /// Whether the limit of scatterings ends a path.
+  bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
+  /// @param albedo of what would scatter it
+  void count_cut(const ScenePath& path, const Channels& albedo);
+  /// By Russian roulette.
   /// @return false if the path has ended
   bool survives(ScenePath& path, RandomStream& random) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
+  /// The same in a new direction.
+  void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
   void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal);
   /// R, G, B on the film of both parts of a radiance.
   Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
@@ -112,6 +127,7 @@ class SceneWavefront {
   const SceneSetup& setup_;
   const PathScene& scene_;
   MediumId camera_medium_ = kVacuum;
+  bool has_alpha_ = false;                                 // whether a shape of the scene has
   std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
   std::vector<TiedSurface> ties_;                          // of the surface that a path meets
   std::vector<ScenePath> paths_;

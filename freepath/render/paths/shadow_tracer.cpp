@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "freepath/base/random.h"
+#include "freepath/render/paths/alpha_chance.h"
 
 namespace freepath {
 namespace {
@@ -22,11 +23,15 @@ uint32_t stream_of(uint32_t flight, uint32_t segment) {
 
 }  // namespace
 
-ShadowTracer::ShadowTracer(const PathScene& scene, const ColorFactory& factory, std::size_t slots)
+ShadowTracer::ShadowTracer(const PathScene& scene, const ColorFactory& factory, uint64_t seed,
+                           std::size_t slots)
     : scene_(scene),
       factory_(factory),
+      seed_(seed),
       has_holes_(std::any_of(scene.materials.begin(), scene.materials.end(),
-                             [](const Material& material) { return material.has_holes(); })),
+                             [](const Material& material) { return material.has_holes(); }) ||
+                 std::any_of(scene.shapes.begin(), scene.shapes.end(),
+                             [](const PathShape& shape) { return shape.alpha.has_value(); })),
       batches_(slots, false) {}
 
 void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media,
@@ -44,42 +49,49 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const Medi
   batch.rays.stream[slot] = stream_of(path.flights, shadow.segments++);
 }
 
+bool ShadowTracer::passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit,
+                          MediaSet& media) const {
+  const float alpha = scene_.alpha_at(hit.point);
+  if (alpha == 0) return true;
+  const PathShape& shape = scene_.shapes[hit.point.shape];
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  if (shape.material &&
+      !scene_.materials[*shape.material].is_hole(hit.point, shadow.direction, context)) {
+    shadow.radiance *= 1 - alpha;
+    return alpha < 1;
+  }
+  // Media on both sides of it have no mean.
+  const AlphaChance chance{seed_, path.pixel, path.sample_key,
+                           stream_number(StreamPurpose::kShadowWalk, path.flights)};
+  if (chance.meets(hit.place.key, alpha)) shape.cross(media, !hit.from_inside);
+  return true;
+}
+
 void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
-  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   float begin = 0;
   MediaSet media = shadow.media;
   Vec3f origin = shadow.origin;
-  const auto is_end = [&](uint32_t shape, uint32_t primitive) {
-    const auto& target = shadow.end.target;
-    return target && target->shape == shape && target->primitive == primitive;
-  };
-  // Whether a ray goes on at a surface, which it crosses then.
-  const auto passes = [&](const SurfaceHit& hit) {
-    const PathShape& shape = scene_.shapes[hit.point.shape];
-    if (shape.material &&
-        !scene_.materials[*shape.material].is_hole(hit.point, shadow.direction, context)) {
-      return false;
-    }
-    media.cross(shape.inside, shape.outside, !hit.from_inside);
-    return true;
+  const auto is_end = [&](const RayPlace& place) {
+    return surfaces.is_end(origin, shadow.direction, place,
+                           {shadow.end.distance - begin, shadow.end.target});
   };
   while (begin < shadow.end.distance) {
     const auto hit = surfaces.intersect(origin, shadow.direction, 0, shadow.end.distance - begin);
     if (!hit) break;
     ties_.clear();
     if (hit->is_tied) surfaces.find_ties(origin, shadow.direction, *hit, ties_);
-    bool ends = is_end(hit->point.shape, hit->point.primitive);
+    bool ends = is_end(hit->place);
     const Vec3f beyond = surfaces.offset_ray_origin(hit->point, shadow.direction);
     const float end = begin + hit->t;
     add_segment(shadow, path, media, begin, end);
-    bool is_free = ends || passes(*hit);
+    bool is_free = ends || passes(shadow, path, *hit, media);
     for (const TiedSurface& tied : ties_) {
       // What a ray from beyond meets may wait.
       if (!surfaces.is_beyond(tied.place, beyond, shadow.direction)) continue;
       const SurfaceHit there = surfaces.describe(origin, shadow.direction, tied);
-      ends = ends || is_end(there.point.shape, there.point.primitive);
-      is_free = is_free && (ends || passes(there));
+      ends = ends || is_end(there.place);
+      is_free = is_free && (ends || passes(shadow, path, there, media));
     }
     if (ends) return;
     if (!is_free) {
@@ -120,7 +132,7 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
       }
       last = crossing.place;
       const PathShape& shape = scene_.shapes[crossing.shape];
-      media.cross(shape.inside, shape.outside, crossing.enters);
+      shape.cross(media, crossing.enters);
     }
     if (!crossings_.overflowed()) break;
   }

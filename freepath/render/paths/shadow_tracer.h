@@ -17,7 +17,8 @@ namespace freepath {
 /// end, then through the media between them.
 class ShadowTracer {
  public:
-  ShadowTracer(const PathScene& scene, const ColorFactory& factory, std::size_t slots);
+  ShadowTracer(const PathScene& scene, const ColorFactory& factory, uint64_t seed,
+               std::size_t slots);
 
   /// Adds a ray.
   /// @param owner of PathState, whose radiance it is to add to
@@ -45,14 +46,18 @@ class ShadowTracer {
 
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
   void trace_surfaces(Shadow& shadow, const ScenePath& path);
-  /// The same where surfaces have holes: place by place.
+  /// The same where surfaces have holes or are there in part: place by place.
   void trace_porous_surfaces(Shadow& shadow, const ScenePath& path);
+  /// Whether a ray goes on at a surface, which it crosses then; what is there in part takes its
+  /// part.
+  bool passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit, MediaSet& media) const;
   void add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media, float begin,
                    float end);
 
   const PathScene& scene_;
   const ColorFactory& factory_;
-  bool has_holes_ = false;          // whether a material of the scene has
+  uint64_t seed_;
+  bool has_holes_ = false;          // whether a material or an alpha of the scene has
   std::vector<Channels> segments_;  // transmittances, ray after ray, each in the order of its way
   std::vector<uint32_t> owners_;    // of the segments
   WalkBatches batches_;

@@ -335,6 +335,18 @@ bool Surfaces::occluded(const Vec3f& origin, const Vec3f& direction, const Shado
   return ray.tfar < 0;
 }
 
+bool Surfaces::is_end(const Vec3f& origin, const Vec3f& direction, const RayPlace& place,
+                      const ShadowEnd& end) const {
+  if (!end.target) return false;
+  std::optional<SurfaceKey> target =
+      data_->world->find_primitive(end.target->shape, end.target->primitive);
+  if (!target) return false;
+  const auto met = data_->meet(*target, {Vec3d(origin), Vec3d(direction)}, end.distance);
+  if (!met) return false;
+  target->root = met->root;
+  return place.key == *target;
+}
+
 std::vector<BoundaryCrossing> Surfaces::all_crossings(const Vec3f& origin,
                                                       const Vec3f& direction) const {
   std::vector<BoundaryCrossing> all;

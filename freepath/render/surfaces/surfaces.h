@@ -152,6 +152,12 @@ class Surfaces {
   bool occluded(const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
                 BoundaryCrossings& crossings, const RayPlace* after = nullptr) const;
 
+  /// Whether a place on a shadow ray is the point that it ends at, and not another one of the same
+  /// primitive, which may lie in its own shadow.
+  /// @param end its distance from this origin
+  bool is_end(const Vec3f& origin, const Vec3f& direction, const RayPlace& place,
+              const ShadowEnd& end) const;
+
   /// All surfaces on a ray in the order of their places, whatever they are made of, each once even
   /// on the common edge of two triangles. Allocates: for the time of loading.
   std::vector<BoundaryCrossing> all_crossings(const Vec3f& origin, const Vec3f& direction) const;

@@ -249,6 +249,13 @@ Channels TextureTable::evaluate_spectrum(SpectrumTextureId id, const SurfacePoin
   return value;
 }
 
+std::optional<float> TextureTable::constant(const FloatInput& input) const {
+  if (const float* const value = std::get_if<float>(&input)) return *value;
+  const auto* const value =
+      std::get_if<float>(&floats_[std::get_if<FloatTextureId>(&input)->index]);
+  return value == nullptr ? std::nullopt : std::optional(*value);
+}
+
 float TextureTable::evaluate(const FloatInput& input, const SurfacePoint& point) const {
   if (const float* const constant = std::get_if<float>(&input)) return *constant;
   return evaluate_float(*std::get_if<FloatTextureId>(&input), point);

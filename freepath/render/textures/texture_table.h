@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "freepath/base/channels.h"
@@ -37,6 +38,9 @@ class TextureTable {
   /// SpectrumValues::reflectance.
   Channels evaluate_spectrum(SpectrumTextureId id, const SurfacePoint& point,
                              const SpectrumValues& spectra, uint64_t* evaluated = nullptr) const;
+
+  /// The value of an input that is the same everywhere.
+  std::optional<float> constant(const FloatInput& input) const;
 
   /// Those of a constant or a texture.
   float evaluate(const FloatInput& input, const SurfacePoint& point) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "freepath/base/nearest_name.h"
 #include "freepath/render/surfaces/loop_subdivision.h"
 #include "freepath/render/surfaces/ply_file.h"
+#include "freepath/scene/build/build_inputs.h"
 #include "freepath/scene/build/build_lights.h"
 #include "freepath/scene/build/build_media.h"
 #include "freepath/scene/build/shape_emitter.h"
@@ -112,7 +114,8 @@ class ShapeBuilder {
     path_shape.material = context_.materials[shape.material];
     path_shape.inside = medium_of(context_, shape.inside_medium);
     path_shape.outside = medium_of(context_, shape.outside_medium);
-    const bool is_there = read_alpha(shape);
+    path_shape.alpha = read_alpha(shape);
+    const bool is_there = path_shape.alpha != FloatInput(0.0F);
     const bool boundary = !path_shape.material;
     const bool shines = shape.area_light && !boundary && !shape.object;
     if (shape.area_light && !shines) {
@@ -142,21 +145,14 @@ class ShapeBuilder {
     }
   }
 
-  /// Whether rays meet a shape. One of alpha 0 is no surface and no boundary of media, but its
-  /// light shines, as in pbrt.
-  bool read_alpha(const PbrtShape& shape) {
-    const ParameterList& list = shape.parameters;
-    const auto type = list.type_of("alpha");
-    if (!type) return true;
-    if (*type == ParameterType::kFloat) {
-      const double alpha = list.get_float("alpha", 1);
-      if (alpha <= 0) return false;
-      if (alpha >= 1) return true;
-    }
-    context_.diagnostics.warn(list.location_of("alpha"),
-                              "'alpha' is left out: the shape is whole, since only 0 and 1, the "
-                              "same everywhere, are supported");
-    return true;
+  /// The share of a shape that rays meet; none: all of it. One of alpha 0 everywhere is no surface
+  /// and no boundary of media, but its light shines, as in pbrt.
+  std::optional<FloatInput> read_alpha(const PbrtShape& shape) {
+    const FloatInput alpha = float_input(context_, shape.parameters, "alpha", 1);
+    const std::optional<float> constant = context_.scene.textures.constant(alpha);
+    if (!constant) return alpha;
+    if (*constant >= 1) return std::nullopt;
+    return std::max(0.0F, *constant);
   }
 
   BuildContext& context_;

@@ -107,7 +107,8 @@ class Simplifier {
       const PathShape& sides = scene_.shapes[shape];
       if (sides.inside != id && sides.outside != id) continue;
       if (sides.inside == sides.outside) continue;  // changes nothing
-      if (sides.material || sides.light || sides.inside != id || sides.outside != kVacuum) {
+      if (sides.material || sides.light || sides.alpha || sides.inside != id ||
+          sides.outside != kVacuum) {
         return false;
       }
       boundary.push_back(shape);
