@@ -72,7 +72,7 @@ bool part_meets_box(const TracedPart& part, const AffineMap& to_world, const Aff
     return std::find(shapes.begin(), shapes.end(), shape.shape) != shapes.end();
   };
   for (const TracedTriangles& mesh : part.triangles) {
-    if (!is_wanted(mesh) || !around(corners_of(mesh.bounds()), to_world).intersects(box)) continue;
+    if (!is_wanted(mesh) || !around(corners_of(mesh.box), to_world).intersects(box)) continue;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
       if (triangle_meets_box(
               {to_world.point(mesh.position(i)), to_world.point(mesh.position(i + 1)),

@@ -1,6 +1,7 @@
 #include "freepath/render/surfaces/surfaces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,9 +18,9 @@ namespace {
 Vec3d middle(std::span<const SurfaceShape> shapes) {
   const TracedPart part(shapes, Vec3d(0));
   Box3d box;
-  for (const auto& mesh : part.triangles) box.extendBy(mesh.bounds());
-  for (const auto& mesh : part.patches) box.extendBy(mesh.bounds());
-  for (const auto& quadric : part.quadrics) box.extendBy(quadric.bounds());
+  for (const auto& mesh : part.triangles) box.extendBy(mesh.box);
+  for (const auto& mesh : part.patches) box.extendBy(mesh.box);
+  for (const auto& quadric : part.quadrics) box.extendBy(quadric.box);
   return box.isEmpty() ? Vec3d(0) : box.center();
 }
 
@@ -31,6 +32,12 @@ void check_all(std::span<const SurfaceShape> shapes) {
       fail("shape {}: {}", shape.shape, error.what());
     }
   }
+}
+
+/// Told by Embree before it takes or after it gives back memory; lets it.
+bool count_bytes(void* total, ssize_t bytes, bool /*post*/) {
+  *static_cast<std::atomic<int64_t>*>(total) += bytes;
+  return true;
 }
 
 }  // namespace
@@ -82,6 +89,7 @@ class Surfaces::Data {
   void aim(SurfaceQuery& query, const ShadowEnd& end) const;
 
   Vec3d origin;
+  std::atomic<int64_t> embree_bytes = 0;  // outlives the device, which counts them
   DeviceHandle device;
   // Parts stay where they are: the scenes refer to their insides. They outlive the scenes.
   std::unique_ptr<const TracedPart> world;
@@ -93,7 +101,7 @@ class Surfaces::Data {
  private:
   void add_instances(const SurfaceScene& scene);
   void note_offsets(const TracedPart& part, const AffineMap& to_world);
-  void note_offset(const TracedShape& shape, const Box3d& box, const AffineMap& to_world);
+  void note_offset(const TracedShape& shape, const AffineMap& to_world);
   SceneHandle new_scene() const;
 };
 
@@ -106,6 +114,7 @@ SceneHandle Surfaces::Data::new_scene() const {
 Surfaces::Data::Data(const SurfaceScene& description, const Vec3d& ray_origin)
     : origin(ray_origin), device(rtcNewDevice(nullptr)) {
   if (!device) check_device(nullptr);
+  rtcSetDeviceMemoryMonitorFunction(device.get(), count_bytes, &embree_bytes);
   check_all(description.shapes);
   for (const auto& group : description.groups) check_all(group);
   world = std::make_unique<TracedPart>(description.shapes, origin);
@@ -154,18 +163,17 @@ void Surfaces::Data::add_instances(const SurfaceScene& description) {
 }
 
 void Surfaces::Data::note_offsets(const TracedPart& part, const AffineMap& to_world) {
-  for (const auto& mesh : part.triangles) note_offset(mesh, mesh.bounds(), to_world);
-  for (const auto& mesh : part.patches) note_offset(mesh, mesh.bounds(), to_world);
-  for (const auto& quadric : part.quadrics) note_offset(quadric, quadric.bounds(), to_world);
+  for (const auto& mesh : part.triangles) note_offset(mesh, to_world);
+  for (const auto& mesh : part.patches) note_offset(mesh, to_world);
+  for (const auto& quadric : part.quadrics) note_offset(quadric, to_world);
 }
 
-void Surfaces::Data::note_offset(const TracedShape& shape, const Box3d& box,
-                                 const AffineMap& to_world) {
+void Surfaces::Data::note_offset(const TracedShape& shape, const AffineMap& to_world) {
   // Many roundings of doubles of this size.
   constexpr double kRoundings = 0x1p-42;
   double largest = std::max({std::abs(to_world.translation.x), std::abs(to_world.translation.y),
                              std::abs(to_world.translation.z)});
-  for (const Vec3d& corner : corners_of(box)) {
+  for (const Vec3d& corner : corners_of(shape.box)) {
     const Vec3d p = to_world.point(corner);
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
@@ -258,6 +266,12 @@ Surfaces& Surfaces::operator=(Surfaces&&) noexcept = default;
 
 const Vec3d& Surfaces::origin() const { return data_->origin; }
 
+SurfaceCosts Surfaces::costs() const {
+  SurfaceCosts costs{data_->world->looked_at, static_cast<uint64_t>(data_->embree_bytes)};
+  for (const auto& group : data_->groups) costs.positions += group->looked_at;
+  return costs;
+}
+
 Box3f Surfaces::bounds() const {
   RTCBounds b;
   rtcGetSceneBounds(data_->scene.get(), &b);
@@ -266,13 +280,14 @@ Box3f Surfaces::bounds() const {
 }
 
 std::optional<SurfaceHit> Surfaces::intersect(const Vec3f& origin, const Vec3f& direction,
-                                              float t_min, float t_max) const {
+                                              float t_min, float t_max, uint64_t* looked_at) const {
   SurfaceQuery query = data_->query(QueryKind::kNearest, origin, direction, t_min, t_max);
   RTCRayHit found{};
   found.ray = Data::ray(origin, direction, t_min, t_max);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(data_->scene.get(), &query.context, &found);
+  if (looked_at != nullptr) *looked_at += query.looked_at;
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   SurfaceHit hit = data_->describe(query.nearest, found.hit.u, found.hit.v, query.ray);
   hit.is_tied = query.is_tied;

@@ -112,6 +112,12 @@ struct ShadowEnd {
   std::optional<Target> target = {};
 };
 
+/// What surfaces cost, counted, so that tests see how it grows.
+struct SurfaceCosts {
+  uint64_t positions = 0;  ///< Those of meshes that were looked at for bounds.
+  uint64_t bytes = 0;      ///< Held by Embree.
+};
+
 /// All surfaces of a scene. Positions are floats relative to `origin` of the constructor [world];
 /// directions need not be unit vectors, and t counts in their length. What is const may be called
 /// by any number of threads, and allocates nothing.
@@ -132,9 +138,12 @@ class Surfaces {
   /// Around all that is there [world, relative to the origin]; empty if nothing is.
   Box3f bounds() const;
 
+  SurfaceCosts costs() const;
+
   /// The nearest surface at t in (t_min, t_max), boundaries included.
+  /// @param looked_at counts the surfaces that were tried; may be null
   std::optional<SurfaceHit> intersect(const Vec3f& origin, const Vec3f& direction, float t_min,
-                                      float t_max) const;
+                                      float t_max, uint64_t* looked_at = nullptr) const;
   /// All other surfaces at the place where a ray meets one, in the order of their places, each once
   /// even on the common edge of two triangles. `ties` is overwritten.
   /// @param hit of this ray

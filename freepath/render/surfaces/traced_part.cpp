@@ -66,6 +66,7 @@ bool is_nearest(SurfaceQuery& query, const TracedShape& shape, const LinePoint& 
 template <class Enters>
 bool meet(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at, const SurfaceKey& key,
           float u, float v, float& t_far, const Enters& enters) {
+  ++query.looked_at;
   if (!(at.t > query.t_min && at.t < query.t_max)) return false;
   switch (query.kind) {
     case QueryKind::kNearest:
@@ -313,6 +314,9 @@ TracedPart::TracedPart(std::span<const SurfaceShape> shapes, const Vec3d& part_o
   for (const TracedTriangles& mesh : triangles) note(mesh, {geometry++, 0, mesh.count()});
   for (const TracedPatches& mesh : patches) note(mesh, {geometry++, 0, mesh.count()});
   for (uint32_t i = 0; i < quadrics.size(); ++i) note(quadrics[i], {geometry, i, 1});
+  for (TracedTriangles& mesh : triangles) mesh.box = mesh.bounds(looked_at);
+  for (TracedPatches& mesh : patches) mesh.box = mesh.bounds(looked_at);
+  for (TracedQuadric& quadric : quadrics) quadric.box = quadric.bounds();
 }
 
 void TracedPart::attach(RTCDevice device, RTCScene scene) const {

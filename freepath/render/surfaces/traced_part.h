@@ -86,6 +86,7 @@ struct SurfaceQuery {
   std::vector<BoundaryCrossing>* all = nullptr;  ///< Of kAll.
   std::span<const uint32_t> counted = {};        ///< Of kCount: the shapes.
   uint32_t count = 0;
+  uint64_t looked_at = 0;  ///< Surfaces, whatever became of them.
 
   uint32_t instance_of(unsigned instance_geometry) const {
     return instance_geometry == RTC_INVALID_GEOMETRY_ID ? kNoInstance
@@ -135,6 +136,7 @@ class TracedPart {
   std::vector<TracedTriangles> triangles;
   std::vector<TracedPatches> patches;
   std::vector<TracedQuadric> quadrics;
+  uint64_t looked_at = 0;  ///< Positions of meshes, for their boxes.
 
  private:
   struct Primitives {

@@ -47,10 +47,12 @@ Vec3d any_tangent(const Vec3d& normal) {
 
 }  // namespace
 
-Box3d TracedVertices::bounds() const {
-  Box3d box;
-  for (std::size_t i = 0; i + 1 < positions.size(); ++i) box.extendBy(Vec3d(positions[i]));
-  return box;
+Box3d TracedVertices::bounds(uint64_t& looked_at) const {
+  Box3d around;
+  for (std::size_t i = 0; i + 1 < positions.size(); ++i, ++looked_at) {
+    around.extendBy(Vec3d(positions[i]));
+  }
+  return around;
 }
 
 Vec3d TracedTriangles::plane_normal(uint32_t triangle) const {
@@ -190,13 +192,13 @@ LocalPoint TracedQuadric::describe(const Vec3d& near_surface) const {
 
 Box3d TracedQuadric::bounds() const {
   const Box3d object = quadric.bounds();
-  Box3d box;
+  Box3d around;
   for (int corner = 0; corner < 8; ++corner) {
-    box.extendBy(object_to_part.point({(corner & 1) != 0 ? object.max.x : object.min.x,
-                                       (corner & 2) != 0 ? object.max.y : object.min.y,
-                                       (corner & 4) != 0 ? object.max.z : object.min.z}));
+    around.extendBy(object_to_part.point({(corner & 1) != 0 ? object.max.x : object.min.x,
+                                          (corner & 2) != 0 ? object.max.y : object.min.y,
+                                          (corner & 4) != 0 ? object.max.z : object.min.z}));
   }
-  return box;
+  return around;
 }
 
 TracedTriangles trace_triangles(const SurfaceShape& shape, const Vec3d& origin) {

@@ -42,6 +42,7 @@ struct TracedShape {
   uint32_t first_primitive = 0;
   bool is_boundary = false;
   bool is_reversed = false;  ///< The outside is not where the normal of the coordinates points.
+  Box3d box{};               ///< Around it [part], once it is in a TracedPart.
 };
 
 /// Vertices rounded to floats, which are what the surface is from there on.
@@ -53,7 +54,9 @@ struct TracedVertices : TracedShape {
   std::vector<uint32_t> indices;
 
   Vec3d position(std::size_t corner) const { return Vec3d(positions[indices[corner]]); }
-  Box3d bounds() const;
+  /// The box around all positions.
+  /// @param looked_at counts them
+  Box3d bounds(uint64_t& looked_at) const;
 };
 
 struct TracedTriangles : TracedVertices {
