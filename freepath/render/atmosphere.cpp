@@ -142,8 +142,7 @@ Vec3d Atmosphere::compute_higher_orders(double altitude, double sun_height) cons
       const Vec3d reflected = exp_of(-depth) * ground_albedo_;
       const double cosine = sun_height_at(chord.length);
       returned += reflected;
-      second_order +=
-          reflected * transmittance_to_space(0, cosine) * (std::max(0.0, cosine) / kPi);
+      second_order += reflected * transmittance_to_space(0, cosine) * (std::max(0.0, cosine) / kPi);
     }
   }
   constexpr double kMean = 1.0 / (kRings * kSectors);
@@ -173,14 +172,13 @@ Atmosphere::Light Atmosphere::along(const View& view, const Vec3d& ground_irradi
     const Densities density = densities_at(altitude);
     const Vec3d rayleigh = rayleigh_ * density.rayleigh * step;
     const Vec3d aerosol = aerosol_ * density.aerosol * step;
-    const double sun_height =
-        (Vec3d(0, chord.radius, 0) + direction * t).normalized().dot(to_sun_);
+    const double sun_height = (Vec3d(0, chord.radius, 0) + direction * t).normalized().dot(to_sun_);
     const Vec3d transmittance = exp_of(-depth - (rayleigh + aerosol) * 0.5);
     const Vec3d sunlight = transmittance * transmittance_to_space(altitude, sun_height);
     light.rayleigh += sunlight * rayleigh;
     light.aerosol += sunlight * aerosol * kAerosolAlbedo;
-    light.rest += transmittance * (rayleigh + aerosol * kAerosolAlbedo) *
-                  higher_orders(altitude, sun_height);
+    light.rest +=
+        transmittance * (rayleigh + aerosol * kAerosolAlbedo) * higher_orders(altitude, sun_height);
     depth += rayleigh + aerosol;
   });
   if (chord.meets_ground) {

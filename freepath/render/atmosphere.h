@@ -20,9 +20,9 @@ AirColumn air_column(double turbidity);
 ///
 /// Light that was scattered once is integrated along each ray. All higher orders are added as if
 /// they came from everywhere alike, with the sum of a geometric series for their number
-/// [Hillaire20, 5.5]: so this is a sky to light pictures by, not an estimator. Its irradiance on the
-/// ground is up to 8 % below that of exact transport for turbidities up to 3, and up to 20 % at 6
-/// (measured against slabs, suns 30 and 53 degrees high); what the air sends back of the ground's
+/// [Hillaire20, 5.5]: so this is a sky to light pictures by, not an estimator. Its irradiance on
+/// the ground is up to 8 % below that of exact transport for turbidities up to 3, and up to 20 % at
+/// 6 (measured against slabs, suns 30 and 53 degrees high); what the air sends back of the ground's
 /// light is twice too much, 5 % of the sky over a ground of albedo 0.15.
 class Atmosphere {
  public:
@@ -68,7 +68,7 @@ class Atmosphere {
   Vec3d higher_orders(double altitude, double sun_height) const;
   Vec3d compute_higher_orders(double altitude, double sun_height) const;
 
-  Vec3d to_sun_;  // where the observer stands, up is y
+  Vec3d to_sun_;              // where the observer stands, up is y
   Vec3d rayleigh_, aerosol_;  // extinction on the ground [1/km]
   Vec3d ground_albedo_;
   std::array<std::array<Vec3d, kSunHeights>, kAltitudes> higher_orders_;

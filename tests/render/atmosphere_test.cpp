@@ -28,9 +28,8 @@ std::vector<SlabLayer> layers_of(double turbidity, int channel) {
     const double aerosol = column.aerosol[channel] * part(1.2);
     const double scattering = rayleigh + aerosol * Atmosphere::kAerosolAlbedo;
     const double share = rayleigh / scattering;
-    const PhaseFunction phase = parse_phase_function(
-        fmt::format("{}*rayleigh+{}*henyey-greenstein:g={}", share, 1 - share,
-                    Atmosphere::kAerosolG));
+    const PhaseFunction phase = parse_phase_function(fmt::format(
+        "{}*rayleigh+{}*henyey-greenstein:g={}", share, 1 - share, Atmosphere::kAerosolG));
     layers.push_back({.tau = rayleigh + aerosol,
                       .albedo = scattering / (rayleigh + aerosol),
                       .phase = std::make_shared<const PhaseFunction>(phase)});
@@ -82,11 +81,11 @@ TEST(Atmosphere, ScattersOnceAsFlatLayersDo) {
       const double tau = column.rayleigh[channel] + column.aerosol[channel];
       // ∫ e^{-(tau - t)/mu} e^{-t/mu0} dt/mu
       const double rate = 1 / mu0 - 1 / mu;
-      const double transport = std::abs(rate) < 1e-9
-                                   ? tau / mu * std::exp(-tau / mu)
-                                   : std::exp(-tau / mu) * (1 - std::exp(-tau * rate)) / (mu * rate);
-      const double scattered = light.rayleigh[channel] +
-                               light.aerosol[channel] / Atmosphere::kAerosolAlbedo;
+      const double transport =
+          std::abs(rate) < 1e-9 ? tau / mu * std::exp(-tau / mu)
+                                : std::exp(-tau / mu) * (1 - std::exp(-tau * rate)) / (mu * rate);
+      const double scattered =
+          light.rayleigh[channel] + light.aerosol[channel] / Atmosphere::kAerosolAlbedo;
       EXPECT_NEAR(scattered / transport, 1, 0.01) << mu << " " << channel;
     }
   }

@@ -79,7 +79,8 @@ TEST(SceneAlpha, VeilsTransmitWhatTheyAreNot) {
   // The camera's, through two.
   for (const ColorMode mode : kColorModes) {
     const Picture picture = render_text(
-        seen_square(kWhiteSky + veil(1, "\"float alpha\" 0.3") + veil(0.5, "\"float alpha\" 0.6"), 8),
+        seen_square(kWhiteSky + veil(1, "\"float alpha\" 0.3") + veil(0.5, "\"float alpha\" 0.6"),
+                    8),
         {.mode = mode, .samples = 4096});
     expect_mean("camera", picture, grey(0.28));
   }
@@ -90,7 +91,8 @@ TEST(SceneAlpha, VeilsAtOnePlaceAreIndependent) {
   const std::string veils = veil(1, "\"float alpha\" 0.5") + veil(1, "\"float alpha\" 0.4") +
                             "ObjectBegin \"o\" " + veil(0, "\"float alpha\" 0.2") +
                             "ObjectEnd Translate 0 0 1 ObjectInstance \"o\"\n";
-  expect_mean("camera", render_text(seen_square(kWhiteSky + veils, 8), {.samples = 8192}), grey(0.24));
+  expect_mean("camera", render_text(seen_square(kWhiteSky + veils, 8), {.samples = 8192}),
+              grey(0.24));
   expect_red_irradiance("sky", kWhiteSky + veils, 0.24 * std::numbers::pi, 16384);
 }
 
@@ -107,13 +109,14 @@ TEST(SceneAlpha, CutOutsAreHolesForAllRays) {
   expect_board("shadow", render_text(seen_square(kHoles + floor + cut, 4)), 0.5, 0);
   // Behind the camera, in a mirror.
   const std::string mirror =
-      "Material \"conductor\" \"spectrum eta\" [ 300 0 900 0 ] \"spectrum k\" [ 300 1.5 900 1.5 ]\n" +
+      "Material \"conductor\" \"spectrum eta\" [ 300 0 900 0 ] \"spectrum k\" [ 300 1.5 900 1.5 "
+      "]\n" +
       unit_square(0, "");
-  expect_board("mirror",
-               render_text(seen_square(kHoles + kWhiteSky + mirror + kBlack +
-                                           unit_square(4, "\"texture alpha\" \"holes\""),
-                                       4)),
-               1, 0);
+  expect_board(
+      "mirror",
+      render_text(seen_square(
+          kHoles + kWhiteSky + mirror + kBlack + unit_square(4, "\"texture alpha\" \"holes\""), 4)),
+      1, 0);
 }
 
 TEST(SceneAlpha, LightsShineWhereTheyAre) {
@@ -142,7 +145,8 @@ TEST(SceneAlpha, LightsShineWhereTheyAre) {
               grey(0.75 + 0.25 * 3));
   // No part of what is 0 everywhere by a texture of one value: invisible, as by a number.
   const std::string zero = "Texture \"zero\" \"float\" \"constant\" \"float value\" 0\n";
-  expect_red_irradiance("constant texture", zero + light("\"texture alpha\" \"zero\""), whole, 1024);
+  expect_red_irradiance("constant texture", zero + light("\"texture alpha\" \"zero\""), whole,
+                        1024);
 }
 
 // A white furnace: what a sphere does not scatter it emits. Light is found by lights' sampling, by
@@ -153,7 +157,8 @@ TEST(SceneAlpha, GlowingVeilsFillTheFurnace) {
       "AreaLightSource \"diffuse\" \"rgb L\" [ .5 .5 .5 ] \"bool twosided\" true\n"
       "Material \"diffuse\" \"rgb reflectance\" [ .5 .5 .5 ]\n"
       "Shape \"sphere\" \"float radius\" 0.4 \"float alpha\" 0.6\n" +
-      kHoles + "Translate 0.3 0.2 0 Shape \"sphere\" \"float radius\" 0.5 "
+      kHoles +
+      "Translate 0.3 0.2 0 Shape \"sphere\" \"float radius\" 0.5 "
       "\"texture alpha\" \"holes\"\n";
   for (const ColorMode mode : kColorModes) {
     expect_mean("furnace", render_text(seen_square(world, 16), {.mode = mode, .samples = 256}),
@@ -164,11 +169,12 @@ TEST(SceneAlpha, GlowingVeilsFillTheFurnace) {
 // The wall of a pipe that shines hides the wall behind it, whether or not anything has holes.
 TEST(SceneAlpha, LightsAreInTheirOwnShadow) {
   const auto scene = [](const std::string& alpha) {
-    return plane_at(0, "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] "
-                       "\"bool twosided\" true Translate 0 0 2 Rotate 90 0 1 0 "
-                       "Shape \"cylinder\" \"float radius\" 0.5 AttributeEnd "
-                       "Translate 0 0 100 Shape \"disk\" " +
-                           alpha);
+    return plane_at(0,
+                    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] "
+                    "\"bool twosided\" true Translate 0 0 2 Rotate 90 0 1 0 "
+                    "Shape \"cylinder\" \"float radius\" 0.5 AttributeEnd "
+                    "Translate 0 0 100 Shape \"disk\" " +
+                        alpha);
   };
   const Picture whole = render_text(scene(""));
   EXPECT_GT(whole.mean[0], 0.05);
@@ -183,7 +189,8 @@ TEST(SceneAlpha, BoundariesOfMediaAreCrossedByChance) {
       "\"rgb sigma_s\" [ 0 0 0 ]\nAttributeBegin Material \"interface\" "
       "MediumInterface \"smoke\" \"\"\n" +
       box_shape(Vec3d(-50, -50, 0.5), Vec3d(50, 50, 1.5));
-  const std::string part = box.substr(0, box.rfind(']') + 1) + " \"float alpha\" 0.6 AttributeEnd\n";
+  const std::string part =
+      box.substr(0, box.rfind(']') + 1) + " \"float alpha\" 0.6 AttributeEnd\n";
   const double expected = 0.4 + 0.6 * 0.6 * std::exp(-0.7);
   expect_mean("camera", render_text(seen_square(kWhiteSky + part, 8), {.samples = 8192}),
               grey(expected));

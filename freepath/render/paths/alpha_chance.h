@@ -25,8 +25,7 @@ struct AlphaChance {
     const std::array<uint32_t, 4> key =
         philox({surface.instance, surface.geometry, surface.primitive, surface.root},
                {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
-    const std::array<uint32_t, 4> words =
-        philox({key[2], stream, sample, pixel}, {key[0], key[1]});
+    const std::array<uint32_t, 4> words = philox({key[2], stream, sample, pixel}, {key[0], key[1]});
     return uniform_from_words(words[0], words[1]) < alpha;
   }
 };
