@@ -159,7 +159,7 @@ TEST(VectorGrids, ValuesThatAreNoDensitiesNameGridVoxelAndChannel) {
     const std::vector<LoadedField> clamped = load_fields(folder / file, clamp);
     EXPECT_EQ(clamped[0].warnings.size(), 0U);
     ASSERT_EQ(clamped[1].warnings.size(), 1U);
-    EXPECT_NE(clamped[1].warnings[0].find("channel G: 1 negative densities"),
+    EXPECT_NE(clamped[1].warnings[0].find("channel G: 1 negative density"),
               clamped[1].warnings[0].npos);
   }
 }

@@ -257,7 +257,7 @@ TEST(BuildErrors, InvalidPixelsAreZeroWithAWarningOrRefused) {
     Diagnostics diagnostics;
     build_scene(parse(text, diagnostics), diagnostics);
     ASSERT_EQ(diagnostics.warnings().size(), 1U);
-    const std::string& warning = diagnostics.warnings().front();
+    const std::string warning = diagnostics.warnings().front();
     EXPECT_EQ(warning.substr(0, 13), "scene.pbrt:2:") << warning;
     EXPECT_NE(warning.find("2 pixels"), std::string::npos) << warning;
     EXPECT_NE(warning.find("pixel (1, 0) is NaN"), std::string::npos) << warning;
