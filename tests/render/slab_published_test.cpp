@@ -78,7 +78,7 @@ const Problem kThick = {
     "table 12, diffuse",
     {{32, 0.99, 0}},
     0,
-    2'500'000,
+    600'000,
     {{Quantity::kReflectance, 0.79456}, {Quantity::kTransmittance, 0.001464, 0.01}}};
 
 /// Isotropic half-spaces: R(mu0) = 1 - sqrt(1-c) H(mu0) [Chandrasekhar60], exact: along the normal,
