@@ -213,7 +213,13 @@ Medium Medium::with_scaled_bounds(float scale) const {
 
 Medium Medium::clipped_to_voxels() const {
   Medium clipped = *this;
-  clipped.is_clipped_ = true;
+  clipped.reach_ = 0.5;
+  return clipped;
+}
+
+Medium Medium::clipped_to_middles() const {
+  Medium clipped = *this;
+  clipped.reach_ = 0;
   return clipped;
 }
 
@@ -278,7 +284,7 @@ AffineMap Medium::walk_to_field(const WalkPart& part, const Field& field,
 
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
   if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels().counts)};
-  const double reach = is_clipped_ || interpolation == Interpolation::kNearest ? 0.5 : 1.0;
+  const double reach = std::min(reach_, interpolation == Interpolation::kNearest ? 0.5 : 1.0);
   const double scale = 1.0 / super_voxels().cell_size;
   const Box3d places = space_.bounds(fields(), reach);
   return {Vec3f(places.min * scale), Vec3f(places.max * scale)};
@@ -286,7 +292,7 @@ Box3f Medium::walk_bounds(Interpolation interpolation) const {
 
 Box3f Medium::walk_bounds(const WalkPart& part, Interpolation interpolation) const {
   if (parts().size() == 1 && part_tree().leaves().empty()) return walk_bounds(interpolation);
-  const double reach = is_clipped_ || interpolation == Interpolation::kNearest ? 0.5 : 1.0;
+  const double reach = std::min(reach_, interpolation == Interpolation::kNearest ? 0.5 : 1.0);
   const Box3d places = space_.bounds(fields(), reach);
   Box3f box;
   for (int axis = 0; axis < 3; ++axis) {
@@ -303,13 +309,15 @@ Box3d Medium::world_bounds() const {
     return {Vec3d(function->box.min), Vec3d(function->box.max)};
   }
   Box3d box;
+  const double reach = std::min(reach_, 0.5);
   for (const Component& component : components_) {
     const BrickMap& map = component.density->voxels;
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d point;
       for (int axis = 0; axis < 3; ++axis) {
         point[axis] =
-            (corner >> axis & 1) != 0 ? map.active_max()[axis] + 0.5 : map.active_min()[axis] - 0.5;
+            (corner >> axis & 1) != 0 ? map.active_max()[axis] + reach
+                                       : map.active_min()[axis] - reach;
       }
       box.extendBy(point * component.density->index_to_world);
     }

@@ -73,6 +73,9 @@ class Medium {
   /// The same medium, cut off at the faces of its outermost active voxels, where the filter's reach
   /// would let it fade over another half of a voxel.
   Medium clipped_to_voxels() const;
+  /// The same, cut off at the middles of its outermost active voxels: what lies inside of them is
+  /// not faded.
+  Medium clipped_to_middles() const;
 
   const std::vector<Component>& components() const { return components_; }
   /// The parts that walks take place in, one after the other: one, unless the voxels lie far
@@ -144,7 +147,7 @@ class Medium {
   WalkCells walk_cells_;
   WalkSpace space_;
   Matrix4d world_to_place_;
-  bool is_clipped_ = false;
+  double reach_ = 1;  // beyond the middles of the outermost voxels, where filters reach so far
 };
 
 }  // namespace freepath

@@ -1,6 +1,8 @@
 #pragma once
 /// @file What paths record for the layers of a picture.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,9 +15,15 @@ namespace freepath {
 /// layers that nobody asked for. Values that are not finite are left out: their paths count as 0.
 class LayerRecorder {
  public:
-  /// Forgets the last job.
+  /// Forgets all samples, and makes room for so many.
   void begin(const Film& film, std::size_t samples) {
     samples_.assign(film.layers().has_any(kPathLayers) ? samples : 0, LayerSample{});
+  }
+  /// Forgets `count` samples from `first` on, and makes room for them.
+  void renew(std::size_t first, std::size_t count, const Film& film) {
+    if (!film.layers().has_any(kPathLayers)) return;
+    samples_.resize(std::max(samples_.size(), first + count));
+    std::fill_n(samples_.begin() + static_cast<std::ptrdiff_t>(first), count, LayerSample{});
   }
   bool on() const { return !samples_.empty(); }
   const LayerSample& operator[](std::size_t sample) const {

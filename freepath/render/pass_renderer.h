@@ -116,22 +116,27 @@ class PassRenderer {
   void work(uint32_t samples, std::atomic<std::size_t>& next_pixel) {
     const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
     Wavefront& wavefront = wavefronts_.local();
-    const auto pass_is_over = [&] { return is_over(samples); };
     const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
     std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
     const std::size_t fewest =
         hasty ? std::min(fewest_pixels_, kMostPixelsOfHastyJobs) : fewest_pixels_;
-    while (!over_) {
+    double began = 0;
+    PathJobSource jobs;
+    jobs.next = [&]() -> std::optional<PathJob> {
       const std::size_t wanted = std::max<std::size_t>(paths / samples, fewest);
-      const std::size_t first = next_pixel.fetch_add(wanted);
-      if (first >= pixels) return;
-      const std::size_t count = std::min(wanted, pixels - first);
-      const double began = time();
-      if (!wavefront.trace({first, count, samples_done_, samples}, film_, pass_is_over)) return;
-      const double paths_traced = static_cast<double>(count) * samples;
+      const std::size_t first = over_ ? pixels : next_pixel.fetch_add(wanted);
+      if (first >= pixels) return std::nullopt;
+      began = time();
+      return PathJob{first, std::min(wanted, pixels - first), samples_done_, samples};
+    };
+    jobs.finished = [&](const PathJob& job) {
+      const auto paths_traced = static_cast<double>(job.sample_count());
       paths_done_ += paths_traced / static_cast<double>(pixels);
       if (hasty) paths = hasty_job_size(seconds_since(began) / paths_traced);
-    }
+    };
+    jobs.stop = [&] { return is_over(samples); };
+    jobs.overlaps = !hasty;
+    wavefront.trace(jobs, film_);
   }
 
   /// Paths of a job so that it takes a small part of the time there is.

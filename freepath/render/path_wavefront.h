@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,21 @@ struct PathJob {
   std::size_t pixels = 0;
   uint32_t first_sample = 0;
   uint32_t samples = 0;
+
+  std::size_t sample_count() const { return pixels * samples; }
+};
+
+/// Where a wavefront gets its jobs from.
+struct PathJobSource {
+  /// The next job, none of which has a pixel of another that is under way; nothing if there is none.
+  std::function<std::optional<PathJob>()> next;
+  /// Told of each that has been added to the film.
+  std::function<void(const PathJob&)> finished = [](const PathJob&) {};
+  /// Asked before every flight; once it is true the jobs under way are dropped whole: nothing of
+  /// them is added to the film.
+  std::function<bool()> stop = [] { return false; };
+  /// Whether a job may begin before the one before it has ended, so that lanes stay full.
+  bool overlaps = true;
 };
 
 /// Traces paths through a medium lit from outside and from within: walk, scatter with next-event
@@ -51,6 +67,15 @@ class PathWavefront {
  public:
   explicit PathWavefront(const PathSetup& setup);
 
+  /// Traces jobs, one after the other, as long as there are any.
+  /// @return false if they were stopped
+  bool trace(const PathJobSource& jobs, Film& film) {
+    while (const std::optional<PathJob> job = jobs.next()) {
+      if (!trace(*job, film, jobs.stop)) return false;
+      jobs.finished(*job);
+    }
+    return true;
+  }
   /// Traces a job and adds its samples to the film, each pixel's in the order of their numbers.
   /// @param stop asked before every flight of the wavefront; once it is true the job is dropped
   ///   whole: nothing is added to the film or to the counts

@@ -113,9 +113,10 @@ TEST(SceneLights, ADrawHasTheDensityAndRadianceThatItsRayFinds) {
       int off = 0;
       for (int i = 0; i < 20'000; ++i) {
         const LightDraw draw = draw_with(lights, *values, &random);
-        ASSERT_NEAR(draw.direction.length(), 1, 1e-5) << scene.name;
         ASSERT_TRUE(std::isfinite(draw.pdf) && draw.pdf >= 0 && is_finite(draw.radiance));
-        if (draw.delta || draw.pdf == 0) continue;
+        if (draw.pdf == 0) continue;
+        ASSERT_NEAR(draw.direction.length(), 1, 1e-5) << scene.name;
+        if (draw.delta) continue;
         const LightSeen seen = trace(scene, lights, kPosition, draw, *values);
         ++compared;
         // Rounding makes a ray to the very edge of a shape miss it.
@@ -125,7 +126,7 @@ TEST(SceneLights, ADrawHasTheDensityAndRadianceThatItsRayFinds) {
         off += same_pdf && same_radiance ? 0 : 1;
       }
       EXPECT_LE(off, compared / 2000) << scene.name;
-      EXPECT_TRUE(compared > 0 || scene.deltas) << scene.name;
+      EXPECT_TRUE(compared > 0 || scene.deltas || !lights.is_drawn()) << scene.name;
     }
   }
 }
@@ -175,7 +176,9 @@ TEST(SceneLights, DrawsFollowTheDensityThatRaysFind) {
   }
 }
 
-TEST(SceneLights, DrawsEstimateTheIntegralOfWhatRaysSee) {
+/// As a path does it that may also find lights by itself: balance heuristic [Veach97].
+TEST(SceneLights, DrawsAndEscapesTogetherEstimateTheIntegralOfWhatRaysSee) {
+  constexpr float kByItself = 1 / (4 * std::numbers::pi_v<float>);
   const SpectrumValues values = spectra().table.in_rgb();
   // A lobe that no light is symmetric to, as a phase function would weight the light.
   const Vec3f axis = Vec3f(1, 0.4F, -0.7F).normalized();
@@ -200,7 +203,19 @@ TEST(SceneLights, DrawsEstimateTheIntegralOfWhatRaysSee) {
     testing::RunningStatistics estimates;
     for (int i = 0; i < 300'000; ++i) {
       const LightDraw draw = draw_with(lights, values, &random);
-      estimates.add(draw.pdf > 0 ? f(draw.direction) * draw.radiance[1] / draw.pdf : 0);
+      const float rest = draw.delta ? 0 : kByItself;
+      double sum = draw.pdf > 0 ? f(draw.direction) * draw.radiance[1] / (draw.pdf + rest) : 0;
+      const float u0 = random.uniform();
+      const Vec3f found = sample_sphere(u0, random.uniform());
+      const auto find = [&](const LightSeen& seen) {
+        sum += f(found) * seen.radiance[1] / (seen.pdf + kByItself);
+      };
+      find(lights.escape(kPosition, found, values));
+      for (uint32_t light = 0; light < scene.emitters.size(); ++light) {
+        const auto point = scene.emitters[light]->intersect(kPosition, found);
+        if (point) find(lights.hit(kPosition, light, *point, values));
+      }
+      estimates.add(sum);
     }
     EXPECT_TRUE(testing::check_mean(scene.name, estimates, expected,
                                     {.absolute = 1e-3 * expected, .largest_relative_error = 5e-3}));
@@ -215,8 +230,9 @@ TEST(SceneLights, ExtremesOfTheUniformNumbersAreDirections) {
     for (int i = 0; i < 8; ++i) {
       const LightDraw draw =
           lights.sample(kPosition, values, i & 1 ? kLast : 0, i & 2 ? kLast : 0, i & 4 ? kLast : 0);
-      EXPECT_NEAR(draw.direction.length(), 1, 1e-5) << scene.name;
       EXPECT_TRUE(std::isfinite(draw.pdf) && is_finite(draw.radiance)) << scene.name;
+      if (draw.pdf == 0) continue;
+      EXPECT_NEAR(draw.direction.length(), 1, 1e-5) << scene.name;
     }
   }
 }
@@ -292,21 +308,39 @@ TEST(SceneLights, AnInvisibleAreaLightIsOnlyDrawn) {
   EXPECT_NEAR(draw.radiance[1] / draw.pdf, sphere->solid_angle(kPosition), 1e-4);
 }
 
+TEST(SceneLights, DrawsNoLightThatIsTheSameFromEverywhere) {
+  const SpectrumValues values = spectra().table.in_rgb();
+  SceneLightsDescription sky;
+  sky.lights = {ConstantInfiniteLight{.radiance = spectra().warm}};
+  const SceneLights alone(sky, spectra().table);
+  EXPECT_FALSE(alone.is_drawn());
+  EXPECT_EQ(alone.sample(kPosition, values, 0.5F, 0.5F, 0.5F).pdf, 0);
+  EXPECT_EQ(alone.escape(kPosition, {0, 0, 1}, values).pdf, 0);
+  EXPECT_FALSE(is_black(alone.escape(kPosition, {0, 0, 1}, values).radiance));
+  sky.lights.emplace_back(DistantLight{.radiance = spectra().grey});
+  const SceneLights with_sun(sky, spectra().table);
+  for (const float u : {0.0F, 0.3F, 0.999F}) {
+    const LightDraw draw = with_sun.sample(kPosition, values, 0.5F, 0.5F, u);
+    EXPECT_TRUE(draw.delta);
+    EXPECT_EQ(draw.pdf, 1);
+  }
+}
+
 TEST(SceneLights, KnowsWhenThereIsNoLight) {
   const SpectrumValues values = spectra().table.in_rgb();
-  EXPECT_TRUE(SceneLights({}, spectra().table).is_dark());
+  EXPECT_FALSE(SceneLights({}, spectra().table).is_drawn());
   SceneLightsDescription black;
   black.lights = {ConstantInfiniteLight{}, DistantLight{}, PointLight{},
                   ImageInfiniteLight{.image = {"black", testing::colour_image(4, 4, [](int, int) {
                                                  return Vec3f(0);
                                                })}}};
   const SceneLights lights(black, spectra().table);
-  EXPECT_TRUE(lights.is_dark());
+  EXPECT_FALSE(lights.is_drawn());
   EXPECT_EQ(lights.sample(kPosition, values, 0.5F, 0.5F, 0.5F).pdf, 0);
   EXPECT_TRUE(is_black(lights.escape(kPosition, {0, 0, 1}, values).radiance));
   SceneLightsDescription lit;
   lit.lights = {PointLight{.intensity = spectra().warm}};
-  EXPECT_FALSE(SceneLights(lit, spectra().table).is_dark());
+  EXPECT_TRUE(SceneLights(lit, spectra().table).is_drawn());
 }
 
 }  // namespace

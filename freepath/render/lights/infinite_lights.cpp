@@ -120,10 +120,16 @@ void InfiniteLights::finish() {
   // for more where the others are in shadow.
   constexpr double kEvenPart = 0.2;
   double sum = 0;
-  for (const Light& light : lights_) sum += light.importance;
+  double drawn = 0;
+  for (const Light& light : lights_) {
+    if (!light.is_drawn()) continue;
+    sum += light.importance;
+    ++drawn;
+  }
+  is_drawn_ = drawn > 0;
   for (Light& light : lights_) {
-    light.share = static_cast<float>((1 - kEvenPart) * light.importance / sum +
-                                     kEvenPart / static_cast<double>(lights_.size()));
+    if (!light.is_drawn()) continue;
+    light.share = static_cast<float>((1 - kEvenPart) * light.importance / sum + kEvenPart / drawn);
   }
 }
 
@@ -190,12 +196,15 @@ Vec3f InfiniteLights::sample_world(const Light& light, float u0, float u1) {
 LightDraw InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values, float u0,
                                  float u1, float u2) const {
   LightDraw draw;
-  std::size_t chosen = 0;
-  while (chosen + 1 < lights_.size() && u2 >= lights_[chosen].share) {
-    u2 -= lights_[chosen++].share;
+  const Light* chosen = nullptr;
+  for (const Light& light : lights_) {
+    if (light.share == 0) continue;
+    chosen = &light;
+    if (u2 < light.share) break;
+    u2 -= light.share;
   }
-  if (lights_.empty()) return draw;
-  const Light& light = lights_[chosen];
+  if (chosen == nullptr) return draw;
+  const Light& light = *chosen;
   if (light.portal) {
     const std::optional<Vec3f> direction = light.portal->sample(from, u0, u1);
     if (!direction) return draw;

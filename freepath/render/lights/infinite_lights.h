@@ -22,6 +22,9 @@ namespace freepath {
 /// The lights from outside of the scene as one, but those of a single direction: their radiances
 /// add up, and the density of a direction is that of the mixture of them all. Hence a single
 /// evaluation is needed for multiple importance sampling. Immutable; threads share it freely.
+///
+/// A light that is the same from everywhere is never drawn: a path that escapes finds it by itself,
+/// and no draw could choose better than a phase function or a material does. A portal changes that.
 class InfiniteLights {
  public:
   /// Lights of each kind; those that are black are left out.
@@ -32,11 +35,12 @@ class InfiniteLights {
   /// To be called after the last light.
   void finish();
 
-  bool is_dark() const { return lights_.empty(); }
+  /// Whether there is something to draw.
+  bool is_drawn() const { return is_drawn_; }
 
-  /// What a ray sees that escapes, and the density of `sample` there.
+  /// What a ray sees that escapes, and the density of `sample` there: 0 of what is not drawn.
   LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
-  /// A draw of all lights together.
+  /// A draw of all lights together. Of density 0 if there is nothing to draw.
   LightDraw sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
                    float u2) const;
 
@@ -53,6 +57,8 @@ class InfiniteLights {
     std::optional<Portal> portal = {};
     double importance = 0;
     float share = 0;  // probability of drawing it
+
+    bool is_drawn() const { return portal || !std::holds_alternative<Constant>(radiance); }
   };
 
   LightSeen evaluate(const Light& light, const Vec3f& from, const Vec3f& direction,
@@ -60,6 +66,7 @@ class InfiniteLights {
   static Vec3f sample_world(const Light& light, float u0, float u1);
 
   std::vector<Light> lights_;
+  bool is_drawn_ = false;
 };
 
 }  // namespace freepath

@@ -67,7 +67,7 @@ void SceneLights::set_shares() {
   double illuminance = 0;
   for (const Distant& light : distant_) illuminance += light.share;
   for (Distant& light : distant_) light.share = static_cast<float>(light.share / illuminance);
-  const bool infinite = !infinite_.is_dark();
+  const bool infinite = infinite_.is_drawn();
   const bool distant = !distant_.empty();
   const bool within = !chooser_.is_dark();
   const int kinds = int{infinite} + int{distant} + int{within};

@@ -22,7 +22,7 @@ namespace freepath {
 /// the origin of the rays. Immutable; threads share it freely, and nothing that is called per path
 /// throws, locks or allocates.
 ///
-/// A draw chooses evenly among the kinds of light that there are: all from outside of the scene but
+/// A draw chooses evenly among the kinds of light to draw: all from outside of the scene but
 /// parallel light, parallel light, and lights within. How much of each arrives depends on what
 /// shadows it, so that no share by power would be safe. Among parallel lights it chooses by
 /// illuminance, among those within as LightChooser does.
@@ -53,8 +53,8 @@ class SceneLights {
   Channels emitted(uint32_t light, const SurfacePoint& point, const Vec3f& towards,
                    const SpectrumValues& values) const;
 
-  /// Whether no light comes from anywhere, so that sampling it is in vain.
-  bool is_dark() const { return infinite_.is_dark() && distant_.empty() && chooser_.is_dark(); }
+  /// Whether there is a light to draw.
+  bool is_drawn() const { return infinite_.is_drawn() || !distant_.empty() || !chooser_.is_dark(); }
 
  private:
   struct Distant {

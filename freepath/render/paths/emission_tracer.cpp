@@ -44,7 +44,7 @@ void EmissionTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statis
   for (WalkBatches::Batch* const batch : batches_.finish()) {
     batch->walker->free_paths(batch->rays, flights_, statistics);
     const bool weighted = batch->rays.weighted();
-    for (std::size_t i = 0; i < batch->owners.size(); ++i) {
+    for (std::size_t i = 0; i < batch->count; ++i) {
       const Line& line = lines_[batch->owners[i]];
       ScenePath& path = paths[line.owner];
       path.lookups += flights_.lookups[i];

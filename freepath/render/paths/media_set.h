@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 
@@ -28,7 +29,7 @@ class MediaSet {
   struct Entry {
     MediumId medium = kVacuum;
     int32_t count = 0;
-    friend bool operator==(const Entry&, const Entry&) = default;
+    friend auto operator<=>(const Entry&, const Entry&) = default;
   };
 
   /// Those whose number is not 0, by medium.
@@ -80,11 +81,11 @@ class MediaSet {
   }
 
   friend bool operator==(const MediaSet& a, const MediaSet& b) {
-    if (a.size_ != b.size_) return false;
-    for (uint32_t i = 0; i < a.size_; ++i) {
-      if (!(a.entries_[i] == b.entries_[i])) return false;
-    }
-    return true;
+    return std::ranges::equal(a.entries(), b.entries());
+  }
+  /// Any order.
+  friend bool operator<(const MediaSet& a, const MediaSet& b) {
+    return std::ranges::lexicographical_compare(a.entries(), b.entries());
   }
 
  private:

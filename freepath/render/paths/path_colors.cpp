@@ -17,10 +17,9 @@ namespace {
 
 /// Wavelengths of a block. What a quadrature over them misses is common to all pixels, and has to
 /// be small against the noise of the mean of a picture: 256 are, up to a thousand million paths
-/// under daylight, and cost next to nothing where walkers are shared. Where they are not, flights
-/// are walked in as many streams as there are sets, and small pictures have fewer.
-constexpr int kNodes = 1024;
-constexpr int kNodesOfManyPixels = 256;
+/// under daylight. Where walkers are not shared, flights are walked in as many streams as there are
+/// sets, and small pictures have fewer.
+constexpr int kNodes = 256;
 constexpr int kFewestNodes = 64;
 constexpr double kManyPixels = 65536;
 /// Sets whose voxels are copies of their own take memory, of which a block may have so much.
@@ -117,8 +116,7 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
 uint32_t ColorFactory::choose_sets_per_block() const {
   if (mode_ == ColorMode::kRgb) return 1;
   const double pixels = double(scene_.camera->width()) * scene_.camera->height();
-  int nodes = kNodes;
-  if (depends_on_wavelengths_) nodes = pixels < kManyPixels ? kFewestNodes : kNodesOfManyPixels;
+  const int nodes = depends_on_wavelengths_ && pixels < kManyPixels ? kFewestNodes : kNodes;
   auto sets = std::bit_ceil(static_cast<uint32_t>((nodes + wavelengths_ - 1) / wavelengths_));
   std::size_t bytes = 0;
   for (const SceneMedium& medium : scene_.media) bytes += medium.bytes_of_set(wavelengths_);

@@ -7,6 +7,7 @@
 #include "freepath/base/channels.h"
 #include "freepath/base/vector.h"
 #include "freepath/render/film.h"
+#include "freepath/render/paths/media_places.h"
 #include "freepath/render/paths/path_colors.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/surfaces/surfaces.h"
@@ -20,8 +21,8 @@ struct ScenePath {
   /// Where the ray ends at a surface, once that is known.
   std::optional<SurfaceHit> hit;
   bool surfaces_known = false;
-  MediaSet media;
-  MediumId medium = kVacuum;  ///< What these media are together: ColorFactory::medium_of.
+  PlaceId place = 0;          ///< Which media are around: MediaPlaces.
+  MediumId medium = kVacuum;  ///< What they are together.
 
   const PathColors* colors = nullptr;
   Channels throughput;
@@ -47,7 +48,8 @@ struct ScenePath {
   uint32_t flights = 0;     ///< Rays so far.
   uint32_t turned_in = 0;   ///< The flight with which its direction began.
   uint32_t scatterings = 0;
-  uint32_t result = 0;  ///< Place among the paths of the job's samples.
+  uint32_t job = 0;     ///< Of OpenJobs.
+  uint32_t result = 0;  ///< Place of what it finds in OpenJobs::results.
   int channel = -1;     ///< The one channel that it carries, or -1.
   uint64_t lookups = 0;
   float distance = 0;  ///< Flown from the camera, until the first event [world].

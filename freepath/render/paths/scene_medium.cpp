@@ -154,9 +154,9 @@ Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectr
   return albedo;
 }
 
-std::shared_ptr<const Medium> make_homogeneous_medium(const std::string& name, const Box3d& box,
-                                                      float largest_sigma_t) {
-  // Filters let the outermost voxels fade, so that the box ends at their centres.
+SceneMedium SceneMedium::homogeneous(std::string name, SceneMediumComponent component,
+                                     const Matrix4d& unit_to_world, float largest_sigma_t) {
+  // Filters let the outermost voxels fade, so that the box ends at their middles.
   constexpr int kVoxels = 3;
   BrickMapBuilder builder(Vec3i(0), Vec3i(kVoxels - 1), 0);
   for (int i = 0; i < kVoxels * kVoxels * kVoxels; ++i) {
@@ -165,12 +165,21 @@ std::shared_ptr<const Medium> make_homogeneous_medium(const std::string& name, c
   auto field = std::make_shared<Field>();
   field->name = name;
   field->voxels = std::move(builder).finish();
-  field->index_to_world.setScale(box.size() / double{kVoxels - 1});
-  for (int axis = 0; axis < 3; ++axis) field->index_to_world[3][axis] = box.min[axis];
-  Component component;
-  component.density = field;
-  component.sigma_s = Spectrum(largest_sigma_t);
-  return std::make_shared<const Medium>(std::vector<Component>{component});
+  Matrix4d index_to_unit;
+  index_to_unit.setScale(1.0 / (kVoxels - 1));
+  field->index_to_world = index_to_unit * unit_to_world;
+  Component uniform;
+  uniform.density = field;
+  uniform.sigma_s = Spectrum(largest_sigma_t);
+  SceneMedium medium(std::move(name),
+                     std::make_shared<const Medium>(Medium({uniform}).clipped_to_middles()),
+                     {std::move(component)});
+  medium.is_homogeneous_ = true;
+  return medium;
+}
+
+SceneMedium SceneMedium::in_box(const Matrix4d& unit_to_world) const {
+  return homogeneous(name_, components_[0], unit_to_world, medium_->components()[0].sigma_s[0]);
 }
 
 }  // namespace freepath

@@ -56,6 +56,11 @@ class SceneMedium {
   ///   the spectra can be, and decide the size of super-voxels alone
   SceneMedium(std::string name, std::shared_ptr<const Medium> medium,
               std::vector<SceneMediumComponent> components);
+  /// The same everywhere in a box, and nowhere else.
+  /// @param unit_to_world puts the unit cube where the medium is
+  /// @param largest_sigma_t bounds what the spectra can be [1/m]
+  static SceneMedium homogeneous(std::string name, SceneMediumComponent component,
+                                 const Matrix4d& unit_to_world, float largest_sigma_t);
   /// @throws Error if sizes do not fit the counts
   SceneMedium(std::string name, std::shared_ptr<const ColorVoxels> voxels);
 
@@ -81,6 +86,10 @@ class SceneMedium {
   /// Null where voxels depend on wavelengths.
   const std::shared_ptr<const Medium>& medium() const { return medium_; }
   const std::vector<SceneMediumComponent>& components() const { return components_; }
+  /// Whether it is the same everywhere in its bounds.
+  bool is_homogeneous() const { return is_homogeneous_; }
+  /// The same in another box; only of a homogeneous one.
+  SceneMedium in_box(const Matrix4d& unit_to_world) const;
 
  private:
   BoundMedium bind_colors(const SpectrumValues& spectra) const;
@@ -91,10 +100,8 @@ class SceneMedium {
   std::shared_ptr<const ColorVoxels> colors_;
   std::vector<PhaseFunction> phases_;
   Box3d bounds_;
+  bool is_homogeneous_ = false;
 };
 
-/// A medium that is the same everywhere in a box.
-std::shared_ptr<const Medium> make_homogeneous_medium(const std::string& name, const Box3d& box,
-                                                      float largest_sigma_t);
 
 }  // namespace freepath

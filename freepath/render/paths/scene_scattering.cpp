@@ -7,7 +7,7 @@
 namespace freepath {
 
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
-  const bool needs_spectrum = !spectra_.empty();
+  const bool needs_spectrum = records_spectra_;
   if (!setup_.factory->sees_rgb() || path.is_coloured || needs_spectrum) return false;
   const Channels& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
@@ -109,10 +109,10 @@ std::optional<SurfaceHit> SceneWavefront::choose_surface(const ScenePath& path) 
 }
 
 SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const SurfaceHit& hit,
-                                                 const Vec3f& direction) const {
-  Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.media};
+                                                 const Vec3f& direction) {
+  Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.place};
   const auto cross = [&](uint32_t shape, bool enters) {
-    scene_.shapes[shape].cross(departure.media, enters);
+    departure.place = places_.cross(departure.place, shape, enters);
   };
   const bool goes_through = (direction.dot(hit.point.normal) > 0) == hit.from_inside;
   if (goes_through) cross(hit.point.shape, !hit.from_inside);
@@ -122,21 +122,6 @@ SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const Su
     }
   }
   return departure;
-}
-
-void SceneWavefront::set_media(ScenePath& path, const MediaSet& media) const {
-  if (media == path.media) return;
-  path.media = media;
-  path.medium = setup_.factory->medium_of(media);
-}
-
-ShadowEnd SceneWavefront::shadow_end(const LightDraw& light) const {
-  ShadowEnd end{light.distance};
-  if (light.area && light.area->light < shapes_of_lights_.size() &&
-      shapes_of_lights_[light.area->light]) {
-    end.target = {*shapes_of_lights_[light.area->light], light.area->primitive};
-  }
-  return end;
 }
 
 LightDraw SceneWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
@@ -168,7 +153,7 @@ void SceneWavefront::pass_hole(ScenePath& path) {
 
 void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
   const Departure departure = depart(path, hit, path.direction);
-  set_media(path, departure.media);
+  set_place(path, departure.place);
   if (path.scatterings == 0) path.distance += hit.t;
   go_on(path, departure.origin, path.direction);
 }
@@ -211,7 +196,7 @@ void SceneWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
   const int channels = path.colors->spectra.channels();
   float sum = 0;
   for (int c = 0; c < channels; ++c) sum += path.throughput[c] * albedo[c];
-  job_counts_.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
+  jobs_[path.job].counts.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
 }
 
 bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
@@ -227,14 +212,14 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
   ScenePath& path = paths_[slot];
   const PathShape& shape = scene_.shapes[hit.point.shape];
   const Material& material = scene_.materials[*shape.material];
-  if (layers_.on()) {
-    layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
+  if (jobs_.layers.on()) {
+    jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
   if (path.scatterings++ == 0) {
     const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
     record_event(path, hit.t, material.albedo(hit.point, path.direction, context),
                  hit.point.shading_normal);
-    if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
+    if (jobs_.layers.on()) jobs_.layers.transmittance(path.result, transmittance_of(path));
     path.sample.alpha = 1;
   }
   const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
@@ -250,7 +235,7 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
     return;
   }
   const Vec3f position = hit.point.position;
-  if (!material.is_specular() && !scene_.lights->is_dark()) {
+  if (!material.is_specular() && scene_.lights->is_drawn()) {
     const LightDraw light = draw_light(position, path.colors->spectra, random);
     if (light.pdf > 0) {
       const MaterialValue f =
@@ -260,7 +245,7 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
       if (!is_black(radiance)) {
         const Departure departure = depart(path, hit, light.direction);
         shadows_.add(static_cast<uint32_t>(slot), departure.origin, light.direction,
-                     shadow_end(light), departure.media, radiance, false);
+                     shadow_end(light), departure.place, radiance, false);
       }
     }
   }
@@ -274,7 +259,7 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
   const Departure departure = depart(path, hit, next->direction);
-  set_media(path, departure.media);
+  set_place(path, departure.place);
   turn(path, position, departure.origin, next->direction);
 }
 
@@ -285,8 +270,8 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   if (!origins.empty()) scatterer = origins[component];
   component = scatterer.component;
   const SceneMedium& medium = scene_.media[scatterer.medium];
-  if (layers_.on()) {
-    layers_.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
+  if (jobs_.layers.on()) {
+    jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
   if (path.scatterings++ == 0) {
     record_event(path, t, medium.albedo(component, setup_.factory->rgb()), -path.direction);
@@ -305,7 +290,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   }
   const Vec3f position = path.origin + path.direction * t;
   const PhaseFunction& phase = medium.phase(component);
-  if (!scene_.lights->is_dark()) {
+  if (scene_.lights->is_drawn()) {
     const bool in_rgb = sees_rgb(path);
     const LightDraw light = draw_light(position, light_spectra(path, in_rgb), random);
     if (light.pdf > 0) {
@@ -315,7 +300,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
       const Channels radiance = light_throughput(path, in_rgb) * light.radiance * share;
       if (!is_black(radiance)) {
         shadows_.add(static_cast<uint32_t>(slot), position, light.direction, shadow_end(light),
-                     path.media, radiance, in_rgb);
+                     path.place, radiance, in_rgb);
       }
     }
   }

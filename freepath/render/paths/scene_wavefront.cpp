@@ -30,11 +30,12 @@ float mean(const Channels& values, int channels) {
 SceneWavefront::SceneWavefront(const SceneSetup& setup)
     : setup_(setup),
       scene_(*setup.scene),
+      places_(*setup.scene, *setup.factory),
       paths_(setup.slots),
       batches_(setup.slots, true),
-      shadows_(*setup.scene, *setup.factory, setup.seed, setup.slots),
+      shadows_(*setup.scene, places_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
-  camera_medium_ = setup.factory->medium_of(scene_.camera_media);
+  camera_place_ = places_.of(scene_.camera_media);
   for (uint32_t shape = 0; shape < scene_.shapes.size(); ++shape) {
     has_alpha_ = has_alpha_ || scene_.shapes[shape].alpha;
     const std::optional<uint32_t> light = scene_.shapes[shape].light;
@@ -44,72 +45,105 @@ SceneWavefront::SceneWavefront(const SceneSetup& setup)
   }
 }
 
-bool SceneWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
-  const StopScope scope(stop);
-  results_.assign(job.pixels * job.samples * setup_.factory->paths_per_sample(), PathSample{});
-  layers_.begin(film, results_.size());
-  spectra_.assign(film.buckets().count > 0 ? results_.size() : 0, Channels());
+bool SceneWavefront::trace(const PathJobSource& jobs, Film& film) {
+  const StopScope scope(jobs.stop);
+  jobs_.begin(film, setup_.factory->paths_per_sample());
+  records_spectra_ = film.buckets().count > 0;
   window_ = film.window();
-  set_order(job);
-  job_counts_ = {};
-  const std::size_t total = job.pixels * job.samples * setup_.factory->paths_per_sample();
-  job_counts_.paths = total;
-  std::size_t next = 0;
-  active_ = 0;
+  active_ = next_path_ = paths_of_newest_ = 0;
+  has_more_jobs_ = true;
   while (true) {
-    while (active_ < setup_.slots && next < total) start_path(job, next++, paths_[active_++]);
-    if (active_ == 0) break;
-    if (scope.stopped() || (stop && stop())) return false;
+    start_paths(jobs, film);
+    if (active_ == 0) return true;
+    if (scope.stopped() || jobs.stop()) return false;
     fly();
-    shadows_.trace(paths_, job_counts_.shadow_rays);
-    emissions_.trace(paths_, job_counts_.free_paths);
-    for (std::size_t slot = 0; slot < active_;) {
-      if (!paths_[slot].is_dead) {
-        ++slot;
-        continue;
-      }
-      finish(paths_[slot]);
-      paths_[slot] = std::move(paths_[--active_]);
-    }
+    shadows_.trace(paths_, counts_.shadow_rays);
+    emissions_.trace(paths_, counts_.free_paths);
+    if (scope.stopped()) return false;
+    end_paths(jobs, film);
   }
-  if (scope.stopped()) return false;
-  add_to_film(job, film);
-  counts_.merge(job_counts_);
-  return true;
+}
+
+bool SceneWavefront::trace(const PathJob& job, Film& film) {
+  bool is_taken = false;
+  PathJobSource jobs;
+  jobs.next = [&]() -> std::optional<PathJob> {
+    if (std::exchange(is_taken, true)) return std::nullopt;
+    return job;
+  };
+  return trace(jobs, film);
+}
+
+void SceneWavefront::start_paths(const PathJobSource& jobs, const Film& film) {
+  while (active_ < setup_.slots) {
+    if (next_path_ == paths_of_newest_) {
+      const bool may_begin = jobs_.is_empty() || (jobs.overlaps && jobs_.has_room());
+      if (!has_more_jobs_ || !may_begin) return;
+      const std::optional<PathJob> job = jobs.next();
+      has_more_jobs_ = job.has_value();
+      if (!job) return;
+      newest_ = jobs_.open(*job, film);
+      next_path_ = 0;
+      paths_of_newest_ = jobs_[newest_].paths;
+      set_order(*job);
+    }
+    start_path(next_path_++, paths_[active_++]);
+  }
+}
+
+void SceneWavefront::end_paths(const PathJobSource& jobs, Film& film) {
+  for (std::size_t slot = 0; slot < active_;) {
+    if (!paths_[slot].is_dead) {
+      ++slot;
+      continue;
+    }
+    finish(paths_[slot]);
+    const uint32_t number = paths_[slot].job;
+    paths_[slot] = std::move(paths_[--active_]);
+    if (--jobs_[number].paths_left > 0) continue;
+    add_to_film(jobs_[number], film);
+    counts_.merge(jobs_[number].counts);
+    jobs.finished(jobs_[number].job);
+    jobs_.close(number);
+  }
 }
 
 void SceneWavefront::set_order(const PathJob& job) {
-  const std::size_t total = job.pixels * job.samples;
+  const std::size_t total = job.sample_count();
   order_.resize(total);
   std::iota(order_.begin(), order_.end(), uint32_t{0});
   if (!setup_.factory->depends_on_wavelengths()) return;
   // Flights of one set are walked together.
-  places_.assign(setup_.colors.size() + 1, 0);
+  begin_of_set_.assign(setup_.colors.size() + 1, 0);
   sets_.resize(total);
   for (std::size_t i = 0; i < total; ++i) {
     const auto pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + i / job.samples));
     const uint32_t sample = job.first_sample + static_cast<uint32_t>(i % job.samples);
     sets_[i] = setup_.factory->set_of(pixel, sample) - setup_.first_set;
-    ++places_[sets_[i] + 1];
+    ++begin_of_set_[sets_[i] + 1];
   }
-  std::partial_sum(places_.begin(), places_.end(), places_.begin());
+  std::partial_sum(begin_of_set_.begin(), begin_of_set_.end(), begin_of_set_.begin());
   for (std::size_t i = 0; i < total; ++i) {
-    order_[places_[sets_[i]]++] = static_cast<uint32_t>(i);
+    order_[begin_of_set_[sets_[i]]++] = static_cast<uint32_t>(i);
   }
 }
 
-void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePath& path) {
+void SceneWavefront::start_path(std::size_t number, ScenePath& path) {
+  const PathJob& job = jobs_[newest_].job;
   path = {};
+  path.job = newest_;
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
   const std::size_t place = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
   const std::size_t pixel = place / job.samples;
   const auto sample = static_cast<uint32_t>(place % job.samples);
-  path.result = static_cast<uint32_t>((pixel * job.samples + sample) * per_sample) + channel;
+  path.result = static_cast<uint32_t>(jobs_[newest_].first + place * per_sample) + channel;
   path.pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + pixel));
   const uint32_t sample_number = job.first_sample + sample;
   path.sample_key = sample_number * static_cast<uint32_t>(per_sample) + channel;
-  path.colors = &colors_of(path.pixel, sample_number);
+  // The paths of a sample start one after the other.
+  if (channel == 0) colors_of_sample_ = &colors_of(path.pixel, sample_number);
+  path.colors = colors_of_sample_;
   const int channels = path.colors->spectra.channels();
   if (per_sample > 1) {
     path.channel = path.hero = channel;
@@ -133,8 +167,7 @@ void SceneWavefront::start_path(const PathJob& job, std::size_t number, ScenePat
   path.throughput *= filtered.weight;
   path.origin = path.turned_at = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;
-  path.media = scene_.camera_media;
-  path.medium = camera_medium_;
+  set_place(path, camera_place_);
   if (per_sample == 1) {
     RandomStream random(setup_.seed, path.pixel, path.sample_key,
                         stream_number(StreamPurpose::kCamera, 0));
@@ -180,8 +213,8 @@ void SceneWavefront::fly() {
     }
   }
   for (WalkBatches::Batch* const batch : batches_.finish()) {
-    batch->walker->free_paths(batch->rays, flights_, job_counts_.free_paths);
-    for (std::size_t i = 0; i < batch->owners.size(); ++i) {
+    batch->walker->free_paths(batch->rays, flights_, counts_.free_paths);
+    for (std::size_t i = 0; i < batch->count; ++i) {
       take_flight(batch->owners[i], *batch->walker, i, batch->rays.weighted());
     }
   }
@@ -244,7 +277,7 @@ void SceneWavefront::escape(ScenePath& path) {
     path.sample.alpha =
         1 - (path.channel < 0 ? mean(path.throughput, path.colors->spectra.channels())
                               : path.throughput[path.channel]);
-    if (layers_.on()) layers_.transmittance(path.result, transmittance_of(path));
+    if (jobs_.layers.on()) jobs_.layers.transmittance(path.result, transmittance_of(path));
   }
   const bool in_rgb = sees_rgb(path);
   const LightSeen light =
@@ -252,8 +285,8 @@ void SceneWavefront::escape(ScenePath& path) {
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
   const Channels seen = light_throughput(path, in_rgb) * light.radiance * share;
-  if (layers_.on() && path.scatterings == 0) {
-    layers_.background(path.result,
+  if (jobs_.layers.on() && path.scatterings == 0) {
+    jobs_.layers.background(path.result,
                        rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
   }
   (in_rgb ? path.rgb : path.radiance) += seen;
@@ -264,9 +297,9 @@ void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albe
   path.sample.albedo = {albedo[0], albedo[1], albedo[2]};
   path.sample.depth = path.distance + t;
   path.sample.depth_weight = 1;
-  if (!layers_.on()) return;
+  if (!jobs_.layers.on()) return;
   const Vec3f position = path.origin + path.direction * t + Vec3f(scene_.origin);
-  layers_.event(path.result, normal, position,
+  jobs_.layers.event(path.result, normal, position,
                 1.0F / static_cast<float>(setup_.factory->paths_per_sample()));
 }
 
@@ -284,26 +317,30 @@ Spectrum SceneWavefront::transmittance_of(const ScenePath& path) const {
 }
 
 void SceneWavefront::finish(ScenePath& path) {
-  PathSample& sample = results_[path.result];
+  PathSample& sample = jobs_.results[path.result];
   sample.lookups = static_cast<float>(path.lookups);
   if (!is_finite(path.radiance) || !is_finite(path.rgb)) {
-    ++job_counts_.overflows;
+    ++jobs_[path.job].counts.overflows;
     sample.overflowed = true;
     return;
   }
   sample.radiance = rgb_of(path, path.radiance, path.rgb);
-  if (!spectra_.empty()) spectra_[path.result] = path.radiance;
-  if (layers_.on()) layers_.end(path.result, path.scatterings, sample.radiance);
+  if (records_spectra_) jobs_.spectra[path.result] = path.radiance;
+  if (jobs_.layers.on()) jobs_.layers.end(path.result, path.scatterings, sample.radiance);
   sample.alpha = path.sample.alpha;
   sample.albedo = path.sample.albedo;
   sample.depth = path.sample.depth;
   sample.depth_weight = path.sample.depth_weight;
 }
 
-void SceneWavefront::add_spectrum(const PathJob& job, std::size_t sample, Film& film) const {
+void SceneWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample,
+                                  Film& film) const {
+  const PathJob& job = done.job;
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
   Channels radiance;
-  for (std::size_t c = 0; c < per_sample; ++c) radiance += spectra_[sample * per_sample + c];
+  for (std::size_t c = 0; c < per_sample; ++c) {
+    radiance += jobs_.spectra[done.first + sample * per_sample + c];
+  }
   const uint32_t number = job.first_sample + static_cast<uint32_t>(sample % job.samples);
   const auto pixel =
       static_cast<uint32_t>(window_.in_picture(job.first_pixel + sample / job.samples));
@@ -315,18 +352,20 @@ void SceneWavefront::add_spectrum(const PathJob& job, std::size_t sample, Film& 
                     radiance * (scene_.exposure_scale * kLightUnit));
 }
 
-void SceneWavefront::add_to_film(const PathJob& job, Film& film) const {
+void SceneWavefront::add_to_film(const OpenJobs::Job& done, Film& film) const {
+  const PathJob& job = done.job;
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
   const float share = 1.0F / static_cast<float>(per_sample);
-  for (std::size_t i = 0; i < job.pixels * job.samples; ++i) {
+  for (std::size_t i = 0; i < job.sample_count(); ++i) {
     // The paths of the channels, always in the same order.
-    PathSample sum = results_[i * per_sample];
-    LayerSample layers = layers_[i * per_sample];
+    const std::size_t first = done.first + i * per_sample;
+    PathSample sum = jobs_.results[first];
+    LayerSample layers = jobs_.layers[first];
     if (per_sample > 1) {
       sum = {};
       layers = {};
       for (std::size_t c = 0; c < per_sample; ++c) {
-        const PathSample& part = results_[i * per_sample + c];
+        const PathSample& part = jobs_.results[first + c];
         sum.radiance += part.radiance;
         sum.overflowed |= part.overflowed;
         sum.lookups += part.lookups;
@@ -338,11 +377,11 @@ void SceneWavefront::add_to_film(const PathJob& job, Film& film) const {
           sum.depth = (sum.depth * sum.depth_weight + part.depth * weight) / total;
           sum.depth_weight = total;
         }
-        layers += layers_[i * per_sample + c];
+        layers += jobs_.layers[first + c];
       }
     }
     film.add(job.first_pixel + i / job.samples, sum, layers);
-    if (!spectra_.empty()) add_spectrum(job, i, film);
+    if (records_spectra_) add_spectrum(done, i, film);
   }
 }
 

@@ -2,16 +2,15 @@
 /// @file A wavefront of paths through a scene of media, surfaces and lights.
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "freepath/base/random.h"
 #include "freepath/render/film.h"
-#include "freepath/render/layer_recorder.h"
 #include "freepath/render/path_wavefront.h"
 #include "freepath/render/paths/emission_tracer.h"
+#include "freepath/render/paths/open_jobs.h"
 #include "freepath/render/paths/path_colors.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/paths/path_state.h"
@@ -43,16 +42,27 @@ struct SceneSetup {
 class SceneWavefront {
  public:
   explicit SceneWavefront(const SceneSetup& setup);
+  SceneWavefront(const SceneWavefront&) = delete;  // its parts refer to each other
+  SceneWavefront& operator=(const SceneWavefront&) = delete;
 
-  /// As PathWavefront::trace.
-  bool trace(const PathJob& job, Film& film, const std::function<bool()>& stop = {});
+  /// Traces jobs as long as there are any, and adds the samples of each to the film when its last
+  /// path has ended, each pixel's in the order of their numbers.
+  /// @return false if they were stopped
+  bool trace(const PathJobSource& jobs, Film& film);
+  /// Traces one job.
+  bool trace(const PathJob& job, Film& film);
 
   const PathWavefront::Counts& counts() const { return counts_; }
 
  private:
+  /// Starts paths in all slots that are free, as far as there are jobs.
+  void start_paths(const PathJobSource& jobs, const Film& film);
   /// Fills order_.
   void set_order(const PathJob& job);
-  void start_path(const PathJob& job, std::size_t number, ScenePath& path);
+  /// @param number of the newest job's paths
+  void start_path(std::size_t number, ScenePath& path);
+  /// Takes in the paths that have ended, and the jobs that have with them.
+  void end_paths(const PathJobSource& jobs, Film& film);
   /// @param pixel of the picture
   const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
     return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
@@ -87,11 +97,19 @@ class SceneWavefront {
   /// Where a new ray starts at a surface, and the media that are there.
   struct Departure {
     Vec3f origin;
-    MediaSet media;
+    PlaceId place;
   };
-  Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction) const;
-  void set_media(ScenePath& path, const MediaSet& media) const;
-  ShadowEnd shadow_end(const LightDraw& light) const;
+  Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction);
+  void set_place(ScenePath& path, PlaceId place) const {
+    path.place = place;
+    path.medium = places_.medium(place);
+  }
+  ShadowEnd shadow_end(const LightDraw& light) const {
+    if (!light.area || light.area->light >= shapes_of_lights_.size()) return {light.distance};
+    const std::optional<uint32_t>& shape = shapes_of_lights_[light.area->light];
+    if (!shape) return {light.distance};
+    return {light.distance, ShadowEnd::Target{*shape, light.area->primitive}};
+  }
   /// A light for a position; what its own alpha leaves of it.
   LightDraw draw_light(const Vec3f& position, const SpectrumValues& spectra,
                        RandomStream& random) const;
@@ -120,13 +138,14 @@ class SceneWavefront {
   Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
   Spectrum transmittance_of(const ScenePath& path) const;
   void finish(ScenePath& path);
-  void add_to_film(const PathJob& job, Film& film) const;
+  void add_to_film(const OpenJobs::Job& done, Film& film) const;
   /// @param sample of the job
-  void add_spectrum(const PathJob& job, std::size_t sample, Film& film) const;
+  void add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const;
 
   const SceneSetup& setup_;
   const PathScene& scene_;
-  MediumId camera_medium_ = kVacuum;
+  MediaPlaces places_;
+  PlaceId camera_place_ = 0;
   bool has_alpha_ = false;                                 // whether a shape of the scene has
   std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
   std::vector<TiedSurface> ties_;                          // of the surface that a path meets
@@ -136,14 +155,17 @@ class SceneWavefront {
   FlightStream flights_;
   ShadowTracer shadows_;
   EmissionTracer emissions_;
-  /// The job's samples (pixel · samples + sample) in the order in which they start.
+  OpenJobs jobs_;
+  uint32_t newest_ = 0;        // job, whose paths start now
+  std::size_t next_path_ = 0;  // of those
+  std::size_t paths_of_newest_ = 0;
+  bool has_more_jobs_ = false;
+  /// The newest job's samples (pixel · samples + sample) in the order in which they start.
   std::vector<uint32_t> order_;
-  std::vector<uint32_t> sets_, places_;  // for that order
-  std::vector<PathSample> results_;
-  std::vector<Channels> spectra_;  // of the same paths, if the film records them
-  LayerRecorder layers_;           // of the results
-  PixelWindow window_;             // of the film at work
-  PathWavefront::Counts job_counts_;
+  std::vector<uint32_t> sets_, begin_of_set_;  // for that order
+  const PathColors* colors_of_sample_ = nullptr;  // of the sample whose paths start now
+  bool records_spectra_ = false;
+  PixelWindow window_;  // of the film at work
   PathWavefront::Counts counts_;
 };
 

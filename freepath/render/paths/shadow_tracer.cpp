@@ -23,10 +23,10 @@ uint32_t stream_of(uint32_t flight, uint32_t segment) {
 
 }  // namespace
 
-ShadowTracer::ShadowTracer(const PathScene& scene, const ColorFactory& factory, uint64_t seed,
+ShadowTracer::ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed,
                            std::size_t slots)
     : scene_(scene),
-      factory_(factory),
+      places_(places),
       seed_(seed),
       has_holes_(std::any_of(scene.materials.begin(), scene.materials.end(),
                              [](const Material& material) { return material.has_holes(); }) ||
@@ -34,10 +34,10 @@ ShadowTracer::ShadowTracer(const PathScene& scene, const ColorFactory& factory, 
                              [](const PathShape& shape) { return shape.alpha.has_value(); })),
       batches_(slots, false) {}
 
-void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media,
-                               float begin, float end) {
+void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin,
+                               float end) {
   if (!(begin < end)) return;
-  const MediumId medium = factory_.medium_of(media);
+  const MediumId medium = places_.medium(place);
   if (medium == kVacuum) return;
   const Walker& walker = path.colors->walker(medium, path.channel);
   auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
@@ -50,7 +50,7 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, const Medi
 }
 
 bool ShadowTracer::passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit,
-                          MediaSet& media) const {
+                          PlaceId& place) {
   const float alpha = scene_.alpha_at(hit.point);
   if (alpha == 0) return true;
   const PathShape& shape = scene_.shapes[hit.point.shape];
@@ -63,14 +63,16 @@ bool ShadowTracer::passes(Shadow& shadow, const ScenePath& path, const SurfaceHi
   // Media on both sides of it have no mean.
   const AlphaChance chance{seed_, path.pixel, path.sample_key,
                            stream_number(StreamPurpose::kShadowWalk, path.flights)};
-  if (chance.meets(hit.place.key, alpha)) shape.cross(media, !hit.from_inside);
+  if (chance.meets(hit.place.key, alpha)) {
+    place = places_.cross(place, hit.point.shape, !hit.from_inside);
+  }
   return true;
 }
 
 void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
   float begin = 0;
-  MediaSet media = shadow.media;
+  PlaceId place = shadow.place;
   Vec3f origin = shadow.origin;
   const auto is_end = [&](const RayPlace& place) {
     return surfaces.is_end(origin, shadow.direction, place,
@@ -84,14 +86,14 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) 
     bool ends = is_end(hit->place);
     const Vec3f beyond = surfaces.offset_ray_origin(hit->point, shadow.direction);
     const float end = begin + hit->t;
-    add_segment(shadow, path, media, begin, end);
-    bool is_free = ends || passes(shadow, path, *hit, media);
+    add_segment(shadow, path, place, begin, end);
+    bool is_free = ends || passes(shadow, path, *hit, place);
     for (const TiedSurface& tied : ties_) {
       // What a ray from beyond meets may wait.
       if (!surfaces.is_beyond(tied.place, beyond, shadow.direction)) continue;
       const SurfaceHit there = surfaces.describe(origin, shadow.direction, tied);
       ends = ends || is_end(there.place);
-      is_free = is_free && (ends || passes(shadow, path, there, media));
+      is_free = is_free && (ends || passes(shadow, path, there, place));
     }
     if (ends) return;
     if (!is_free) {
@@ -101,7 +103,7 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) 
     begin = end;
     origin = beyond;
   }
-  add_segment(shadow, path, media, begin, shadow.end.distance);
+  add_segment(shadow, path, place, begin, shadow.end.distance);
 }
 
 void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
@@ -111,11 +113,11 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
     return;
   }
   if (!scene_.surfaces) {
-    add_segment(shadow, path, shadow.media, 0, shadow.end.distance);
+    add_segment(shadow, path, shadow.place, 0, shadow.end.distance);
     return;
   }
   float begin = 0;
-  MediaSet media = shadow.media;
+  PlaceId place = shadow.place;
   std::optional<RayPlace> last;  // which crossing came before
   while (true) {
     if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings_,
@@ -127,16 +129,15 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
       // Those at one place are crossed as one: nothing lies between them.
       if (!last || !crossing.place.is_tied(*last)) {
         const auto end = static_cast<float>(crossing.place.t);
-        add_segment(shadow, path, media, begin, end);
+        add_segment(shadow, path, place, begin, end);
         begin = end;
       }
       last = crossing.place;
-      const PathShape& shape = scene_.shapes[crossing.shape];
-      shape.cross(media, crossing.enters);
+      place = places_.cross(place, crossing.shape, crossing.enters);
     }
     if (!crossings_.overflowed()) break;
   }
-  add_segment(shadow, path, media, begin, shadow.end.distance);
+  add_segment(shadow, path, place, begin, shadow.end.distance);
 }
 
 void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {
@@ -151,7 +152,7 @@ void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statisti
   for (WalkBatches::Batch* const batch : batches_.finish()) {
     batch->walker->transmittance(batch->rays, flights_, statistics);
     const int channels = batch->walker->transmittance_channels();
-    for (std::size_t i = 0; i < batch->owners.size(); ++i) {
+    for (std::size_t i = 0; i < batch->count; ++i) {
       const uint32_t segment = batch->owners[i];
       if (channels == 1) {
         segments_[segment] = Channels(flights_.weight[0][i]);

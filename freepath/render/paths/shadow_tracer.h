@@ -6,7 +6,7 @@
 
 #include "freepath/base/channels.h"
 #include "freepath/base/vector.h"
-#include "freepath/render/paths/path_colors.h"
+#include "freepath/render/paths/media_places.h"
 #include "freepath/render/paths/path_scene.h"
 #include "freepath/render/paths/path_state.h"
 #include "freepath/render/paths/walk_batches.h"
@@ -17,17 +17,17 @@ namespace freepath {
 /// end, then through the media between them.
 class ShadowTracer {
  public:
-  ShadowTracer(const PathScene& scene, const ColorFactory& factory, uint64_t seed,
-               std::size_t slots);
+  /// @param scene,places must outlive this
+  ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed, std::size_t slots);
 
   /// Adds a ray.
   /// @param owner of PathState, whose radiance it is to add to
-  /// @param media at its origin
+  /// @param place at its origin
   /// @param radiance what it adds if nothing is in between
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
   void add(uint32_t owner, const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
-           const MediaSet& media, const Channels& radiance, bool is_rgb) {
-    shadows_.push_back({origin, direction, end, media, radiance, owner, is_rgb});
+           PlaceId place, const Channels& radiance, bool is_rgb) {
+    shadows_.push_back({origin, direction, end, radiance, place, owner, is_rgb});
   }
 
   /// Traces all rays, adds to their paths, and forgets them.
@@ -37,8 +37,8 @@ class ShadowTracer {
   struct Shadow {
     Vec3f origin, direction;
     ShadowEnd end;
-    MediaSet media;
     Channels radiance;
+    PlaceId place;
     uint32_t owner;
     bool is_rgb;
     uint32_t first_segment = 0, segments = 0;
@@ -50,12 +50,11 @@ class ShadowTracer {
   void trace_porous_surfaces(Shadow& shadow, const ScenePath& path);
   /// Whether a ray goes on at a surface, which it crosses then; what is there in part takes its
   /// part.
-  bool passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit, MediaSet& media) const;
-  void add_segment(Shadow& shadow, const ScenePath& path, const MediaSet& media, float begin,
-                   float end);
+  bool passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit, PlaceId& place);
+  void add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin, float end);
 
   const PathScene& scene_;
-  const ColorFactory& factory_;
+  MediaPlaces& places_;
   uint64_t seed_;
   bool has_holes_ = false;          // whether a material or an alpha of the scene has
   std::vector<Channels> segments_;  // transmittances, ray after ray, each in the order of its way

@@ -1,6 +1,8 @@
 #pragma once
 /// @file Rays sorted by the walker that they need.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +18,8 @@ class WalkBatches {
   struct Batch {
     const Walker* walker = nullptr;
     RayStream rays;
-    std::vector<uint32_t> owners;  ///< What the caller calls each ray.
+    std::vector<uint32_t> owners;  ///< What the caller calls each ray; there may be room for more.
+    std::size_t count = 0;         ///< Of rays.
   };
 
   /// @param capacity rays to make room for at once; there may be more
@@ -30,17 +33,36 @@ class WalkBatches {
     Batch& batch;
     std::size_t slot;
   };
-  Place add(const Walker& walker, uint32_t owner);
+  Place add(const Walker& walker, uint32_t owner) {
+    uint32_t& guess = guess_of(walker);
+    if (guess >= used_ || batches_[guess].walker != &walker) guess = find(walker);
+    Batch& batch = batches_[guess];
+    const std::size_t slot = batch.count++;
+    if (slot == batch.owners.size()) resize(batch, 2 * slot);
+    batch.owners[slot] = owner;
+    return {batch, slot};
+  }
 
   /// Those that hold rays, their streams of the right size. To be called after the last ray.
   std::vector<Batch*>& finish();
 
  private:
+  /// The number of a walker's batch, which is made if there is none.
+  uint32_t find(const Walker& walker);
+  static void resize(Batch& batch, std::size_t rays);
+
   std::size_t capacity_;
   bool weighted_;
+  /// Where a walker's batch was last, by bits of its address: a guess.
+  uint32_t& guess_of(const Walker& walker) {
+    constexpr std::size_t kHash = 0x9E3779B97F4A7C15U;
+    return guesses_[reinterpret_cast<std::uintptr_t>(&walker) * kHash >> (64 - kGuessBits)];
+  }
+
+  static constexpr int kGuessBits = 8;
+  std::array<uint32_t, 1U << kGuessBits> guesses_{};
   std::vector<Batch> batches_;  // of walkers, those beyond used_ to be used again
-  std::size_t used_ = 0;
-  std::size_t last_ = 0;
+  uint32_t used_ = 0;
   std::vector<Batch*> finished_;
 };
 

@@ -162,9 +162,13 @@ class MediumReader {
     const double reach =
         smallest > 0 ? std::min(kMeanFreePathsAround / smallest, kLargestReach * size) : size;
     const Box3d box(extent.min - Vec3d(reach + size), extent.max + Vec3d(reach + size));
-    return {medium_.name,
-            make_homogeneous_medium(medium_.name, box, static_cast<float>(sigma_t)),
-            {component}};
+    Matrix4d unit_to_world;
+    unit_to_world.setScale(box.size());
+    unit_to_world[3][0] = box.min.x;
+    unit_to_world[3][1] = box.min.y;
+    unit_to_world[3][2] = box.min.z;
+    return SceneMedium::homogeneous(medium_.name, component, unit_to_world,
+                                    static_cast<float>(sigma_t));
   }
 
   /// The least extinction over the rendered wavelengths that is not 0.

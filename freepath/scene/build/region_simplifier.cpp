@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace freepath {
@@ -11,7 +14,7 @@ namespace {
 /// The part of the world that a medium's densities reach.
 Box3d reach_of(const SceneMedium& medium) {
   Box3d box = medium.bounds();
-  if (!medium.medium()) return box;  // clipped at its bounds
+  if (!medium.medium() || medium.is_homogeneous()) return box;  // clipped at its bounds
   // Half a voxel more where voxels fade; what that is in the world, the transform knows.
   const Component& component = medium.medium()->components()[0];
   Vec3d half(0);
@@ -21,6 +24,59 @@ Box3d reach_of(const SceneMedium& medium) {
     }
   }
   return {box.min - half, box.max + half};
+}
+
+/// Which of a box's corners a place is, a bit for each axis; nothing if it is none.
+std::optional<uint32_t> corner_of(const Box3d& box, const Vec3d& place) {
+  uint32_t corner = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (place[axis] == box.max[axis]) {
+      corner |= 1U << axis;
+    } else if (place[axis] != box.min[axis]) {
+      return std::nullopt;
+    }
+  }
+  return corner;
+}
+
+/// The box that a mesh of twelve triangles is, two of them on each side, in its own space.
+std::optional<Box3d> box_of(const TriangleMesh& mesh) {
+  Box3d box;
+  for (const int index : mesh.indices) box.extendBy(mesh.positions[index]);
+  if (mesh.indices.size() != 36 || !(box.size().x > 0 && box.size().y > 0 && box.size().z > 0)) {
+    return std::nullopt;
+  }
+  // Of each side, the corners that its triangles leave out.
+  std::array<std::vector<uint32_t>, 6> left_out;
+  for (std::size_t first = 0; first < mesh.indices.size(); first += 3) {
+    std::array<uint32_t, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto corner = corner_of(box, mesh.positions[mesh.indices[first + i]]);
+      if (!corner) return std::nullopt;
+      corners[i] = *corner;
+    }
+    const uint32_t low = ~(corners[0] | corners[1] | corners[2]) & 7U;
+    const uint32_t high = corners[0] & corners[1] & corners[2];
+    if (!std::has_single_bit(low | high)) return std::nullopt;  // on no side, or of no area
+    const int axis = std::countr_zero(low | high);
+    // The corners of a side cancel each other but for its own axis.
+    left_out[2 * axis + (high != 0 ? 1 : 0)].push_back(corners[0] ^ corners[1] ^ corners[2] ^ high);
+  }
+  for (int side = 0; side < 6; ++side) {
+    // Two triangles cover it if those corners lie opposite each other.
+    const std::vector<uint32_t>& corners = left_out[side];
+    const uint32_t across = 7U & ~(1U << side / 2);
+    if (corners.size() != 2 || ((corners[0] ^ corners[1]) & across) != across) return std::nullopt;
+  }
+  return box;
+}
+
+/// Puts the unit cube where a box of some space is.
+Matrix4d unit_to_box(const Box3d& box) {
+  Matrix4d matrix;
+  matrix.setScale(box.size());
+  for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = box.min[axis];
+  return matrix;
 }
 
 /// How often a ray has to have entered each medium before it starts at a point, if it is never to
@@ -68,15 +124,17 @@ class Simplifier {
     const Surfaces traced(surfaces_, scene_.origin);
     add_media_around_camera(traced);
     for (MediumId id = 0; id < static_cast<MediumId>(scene_.media.size()); ++id) {
-      const Box3d reach = reach_of(scene_.media[id]);
-      if (traced.intersects_box(all_, reach)) continue;
       std::vector<uint32_t> boundary;
       if (!find_boundary(id, boundary)) continue;
+      const std::optional<SceneMedium> filling = filling_of(id, boundary);
+      const Box3d reach = reach_of(filling ? *filling : scene_.media[id]);
+      if (traced.intersects_box(filling ? all_but(boundary[0]) : all_, reach)) continue;
       const Vec3f center(reach.center() - scene_.origin);
       const bool is_around = scene_.camera_media.count(id) > 0;
       if (boundary.empty() ? !is_around : !traced.is_inside(center, boundary)) continue;
       if (has_others(id, scene_.camera_media)) continue;
       if (has_others(id, media_at(traced, scene_.shapes, scene_.media.size(), center))) continue;
+      if (filling) scene_.media[id] = *filling;
       dissolve(id);
       return;
     }
@@ -121,6 +179,28 @@ class Simplifier {
       }
     }
     return true;
+  }
+
+  /// A homogeneous medium whose boundary is a box, as one that fills this box by itself.
+  std::optional<SceneMedium> filling_of(MediumId id, std::span<const uint32_t> boundary) const {
+    const SceneMedium& medium = scene_.media[id];
+    if (!medium.is_homogeneous() || boundary.size() != 1) return std::nullopt;
+    const SurfaceShape* only = nullptr;
+    for (const SurfaceShape& shape : surfaces_.shapes) {
+      if (shape.shape != boundary[0]) continue;
+      if (only != nullptr) return std::nullopt;
+      only = &shape;
+    }
+    const auto* const mesh = only != nullptr ? std::get_if<TriangleMesh>(&only->geometry) : nullptr;
+    const std::optional<Box3d> box = mesh != nullptr ? box_of(*mesh) : std::nullopt;
+    if (!box) return std::nullopt;
+    return medium.in_box(unit_to_box(*box) * only->object_to_world);
+  }
+
+  std::vector<uint32_t> all_but(uint32_t shape) const {
+    std::vector<uint32_t> others = all_;
+    std::erase(others, shape);
+    return others;
   }
 
   /// Vacuum becomes the medium, and boundaries between both go.
