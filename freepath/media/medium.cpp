@@ -315,9 +315,8 @@ Box3d Medium::world_bounds() const {
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d point;
       for (int axis = 0; axis < 3; ++axis) {
-        point[axis] =
-            (corner >> axis & 1) != 0 ? map.active_max()[axis] + reach
-                                       : map.active_min()[axis] - reach;
+        point[axis] = (corner >> axis & 1) != 0 ? map.active_max()[axis] + reach
+                                                : map.active_min()[axis] - reach;
       }
       box.extendBy(point * component.density->index_to_world);
     }

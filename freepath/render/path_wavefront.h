@@ -48,7 +48,8 @@ struct PathJob {
 
 /// Where a wavefront gets its jobs from.
 struct PathJobSource {
-  /// The next job, none of which has a pixel of another that is under way; nothing if there is none.
+  /// The next job, none of which has a pixel of another that is under way; nothing if there is
+  /// none.
   std::function<std::optional<PathJob>()> next;
   /// Told of each that has been added to the film.
   std::function<void(const PathJob&)> finished = [](const PathJob&) {};

@@ -16,8 +16,8 @@ constexpr double kNameGap = 10;
 constexpr double kValueGap = 8;
 constexpr int kValueDigits = 3;
 
-ValueRange range_of(const BarChart& chart) {
-  ValueRange range(chart.axis.logarithmic);
+AxisRange range_of(const BarChart& chart) {
+  AxisRange range(chart.axis.logarithmic);
   for (const ChartBar& bar : chart.bars) {
     range.add(bar.value);
     for (const std::optional<double>& end : {bar.low, bar.high}) {

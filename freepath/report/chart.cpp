@@ -33,11 +33,11 @@ void check_lengths(const ChartSeries& series) {
 }
 
 struct Ranges {
-  ValueRange x, y;
+  AxisRange x, y;
 };
 
 Ranges ranges_of(const Chart& chart) {
-  Ranges ranges{ValueRange(chart.x.logarithmic), ValueRange(chart.y.logarithmic)};
+  Ranges ranges{AxisRange(chart.x.logarithmic), AxisRange(chart.y.logarithmic)};
   for (const ChartSeries& series : chart.series) {
     for (const double x : series.x) ranges.x.add(x);
     for (const double y : series.y) ranges.y.add(y);

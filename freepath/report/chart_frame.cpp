@@ -56,7 +56,7 @@ void draw_grid_lines(SvgWriter& svg, const PlotAxis& axis, const SvgBox& plot, b
 
 }  // namespace
 
-void ValueRange::add(double value) {
+void AxisRange::add(double value) {
   if (!std::isfinite(value) || (logarithmic_ && value <= 0)) return;
   // Lengths and ends of axes must be finite numbers too.
   constexpr double kLargest = 1e290;
@@ -66,12 +66,12 @@ void ValueRange::add(double value) {
   is_empty_ = false;
 }
 
-void ValueRange::add_interval_end(double value, double end) {
+void AxisRange::add_interval_end(double value, double end) {
   if (!logarithmic_) return add(end);
   if (value > 0 && end > 0 && std::isfinite(value)) add(std::clamp(end, value / 10, value * 10));
 }
 
-AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room) {
+AxisScale scale_of(const ChartAxis& axis, const AxisRange& range, AxisRoom room) {
   check_ends(axis);
   double minimum = range.is_empty() ? (axis.logarithmic ? 1 : 0) : range.minimum();
   double maximum = range.is_empty() ? (axis.logarithmic ? 10 : 1) : range.maximum();

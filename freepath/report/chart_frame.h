@@ -12,9 +12,9 @@
 namespace freepath {
 
 /// The smallest and largest of the values that an axis can show.
-class ValueRange {
+class AxisRange {
  public:
-  explicit ValueRange(bool logarithmic) : logarithmic_(logarithmic) {}
+  explicit AxisRange(bool logarithmic) : logarithmic_(logarithmic) {}
 
   void add(double value);
   /// An end of the interval around a value. On a logarithmic axis it may lie at any distance: it
@@ -40,7 +40,7 @@ enum class AxisRoom {
 /// The scale of an axis: its given ends, and for others the values.
 /// @throws Error where the given ends are not finite, not in order, or not above 0 on a logarithmic
 /// axis
-AxisScale scale_of(const ChartAxis& axis, const ValueRange& range, AxisRoom room);
+AxisScale scale_of(const ChartAxis& axis, const AxisRange& range, AxisRoom room);
 
 /// A scale along a side of the plot [units of the drawing].
 struct PlotAxis {

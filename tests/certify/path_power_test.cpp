@@ -61,11 +61,14 @@ FilmMean volume_furnace(uint32_t samples, uint64_t seed) {
                      .film.to_image());
 }
 
+/// In a ball that glows: a sky that is the same everywhere would not be drawn.
 FilmMean render_furnace(const std::string& world, uint32_t samples, uint64_t seed) {
   const std::string text =
       kUnlimited + film(8) +
       "LookAt 0.2 0.1 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 7\nWorldBegin\n"
-      "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" +
+      "AttributeBegin ReverseOrientation AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] Shape \"sphere\" \"float radius\" 20\n"
+      "AttributeEnd\n" +
       world;
   return mean_of(render_text(text, {.samples = samples, .seed = seed}).image);
 }

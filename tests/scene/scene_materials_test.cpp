@@ -65,7 +65,7 @@ double fresnel_here(std::complex<double> eta) { return fresnel(eta, std::cos(kAn
 TEST(SceneMaterial, DiffuseReflectsItsPartOfTheSky) {
   const std::string material = R"(Material "diffuse" "rgb reflectance" [ .8 .5 .2 ])";
   expect_mean("rgb", render_text(plane_of(material, kSky), {.samples = 512}), {0.8, 0.5, 0.2},
-              {.largest_relative_error = 0.0025});
+              {.absolute = 1e-6, .largest_relative_error = 0.0025});
   expect_mean(
       "spectral",
       render_text(plane_of(material, kSky), {.mode = ColorMode::kSpectral, .samples = 1024}),

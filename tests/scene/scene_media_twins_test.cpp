@@ -97,6 +97,49 @@ TEST(SceneTwins, BoundaryThatNeedNotBeTracedIsAsOneThatIs) {
   expect_twins("boundary", a, b);
 }
 
+/// The boundary of fog between the corners of a box, of one shape for each list of corners.
+std::string fog_boundary(const std::vector<std::string>& triangles) {
+  std::string text = homogeneous("m") +
+                     "AttributeBegin\nTranslate 0 .2 0 Rotate 25 1 .3 .2 Scale .8 1 .7 "
+                     "Material \"interface\" MediumInterface \"m\" \"\"\n";
+  for (const std::string& indices : triangles) {
+    text += R"(Shape "trianglemesh" "point3 P" [ -1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 )"
+            R"(-1 -1 1 1 -1 1 -1 1 1 1 1 1 ] "integer indices" [ )" +
+            indices + "]\n";
+  }
+  return text + "AttributeEnd\n";
+}
+const std::string kEightTriangles = "0 2 1 1 2 3 4 5 6 5 7 6 0 1 4 1 5 4 2 6 3 3 6 7 ";
+const std::string kFourTriangles = "0 4 2 2 4 6 1 3 5 3 7 5 ";
+
+bool needs_no_boundary(const std::string& world) {
+  Diagnostics diagnostics;
+  const BuiltScene built = build_scene(parse(stage(world), diagnostics), diagnostics);
+  return built.scene.is_clear[0];
+}
+
+// A boundary that is a box need not be traced, since the fog ends there by itself.
+TEST(SceneTwins, FogFillsABoxAsWithinABoundary) {
+  const std::string one = fog_boundary({kEightTriangles + kFourTriangles});
+  const std::string two = fog_boundary({kEightTriangles, kFourTriangles});
+  EXPECT_TRUE(needs_no_boundary(one));
+  EXPECT_FALSE(needs_no_boundary(two));
+  expect_twins("box", stage(one), stage(two));
+}
+
+TEST(SceneTwins, FogFillsNothingButABox) {
+  const std::string six = "0 4 2 2 4 6 1 3 5 ";  // and one of the four
+  for (const std::string& triangles :
+       {kEightTriangles + six + "3 7 1 ", kEightTriangles + six, kEightTriangles + six + "1 3 5 ",
+        kEightTriangles + six + "3 5 5 ", kEightTriangles + six + "0 7 5 "}) {
+    EXPECT_FALSE(needs_no_boundary(fog_boundary({triangles}))) << triangles;
+  }
+  // Nor a box with something in it.
+  const std::string ball =
+      R"(AttributeBegin Material "diffuse" Shape "sphere" "float radius" 0.3 AttributeEnd)";
+  EXPECT_FALSE(needs_no_boundary(fog_boundary({kEightTriangles + kFourTriangles}) + ball));
+}
+
 /// A bubble around the camera, too small to be seen.
 TEST(SceneTwins, CameraInAMediumIsAsInABubbleOfIt) {
   const std::string camera =
@@ -185,6 +228,25 @@ INSTANTIATE_TEST_SUITE_P(
                       R"("string tracker" "hero-wavelength")",
                       R"("string tracker" "spectral-decomposition")",
                       R"("string tracker" "spectral" "string transmittance" "next-flight")"));
+
+// A path that has met red and then green has no weight left, and trackers that go by weights
+// nothing to go by.
+TEST(SceneTwins, PaintsWithoutACommonColourLeaveNothing) {
+  const auto corner = [](const char* tracker) {
+    const std::string walls =
+        R"(AttributeBegin Material "diffuse" "rgb reflectance" [ 1 0 0 ] Translate 0 -1.6 0 )"
+        R"(Shape "sphere" "float radius" 1 AttributeEnd )"
+        R"(AttributeBegin Material "diffuse" "rgb reflectance" [ 0 1 0 ] Translate 1.2 0.5 0 )"
+        R"(Shape "sphere" "float radius" 1 AttributeEnd )";
+    return stage(homogeneous("m", R"("rgb sigma_a" [ .1 .2 .3 ] "rgb sigma_s" [ .3 .2 .5 ])") +
+                     R"(AttributeBegin Material "interface" MediumInterface "m" "" )"
+                     R"(Shape "sphere" "float radius" 4 AttributeEnd MediumInterface "m" "m" )" +
+                     walls,
+                 std::string(R"(Integrator "volpath" "integer maxdepth" 8 "string tracker" ")") +
+                     tracker + "\"\n");
+  };
+  expect_twins("paints", corner("delta"), corner("spectral-decomposition"));
+}
 
 }  // namespace
 }  // namespace freepath::testing

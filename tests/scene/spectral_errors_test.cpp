@@ -152,11 +152,11 @@ std::pair<float, float> samples_of(const Picture& picture) {
 
 // Time ends pictures in the midst of a pass: some pixels have its samples, and others not.
 TEST(SpectralErrors, OfPicturesThatTimeEndsAreNotMoreThanStated) {
-  constexpr int kSize = 40;  // for several jobs in a pass
+  constexpr int kSize = 64;  // for several jobs in a pass
   for (const std::string& text : {coloured_cloud(kSize), ball_in_fog(kSize)}) {
     int broken_off = 0;
     const auto begin = [](int picture, PictureOptions& options) {
-      options.clock = jumping_clock(110 + 2 * static_cast<uint64_t>(picture));
+      options.clock = jumping_clock(120 + 2 * static_cast<uint64_t>(picture));
     };
     const auto end = [&](const Picture& picture) {
       const auto [fewest, most] = samples_of(picture);

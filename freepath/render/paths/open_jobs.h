@@ -13,9 +13,9 @@
 
 namespace freepath {
 
-/// Jobs whose paths are in flight together, and what these have found so far. The next job may begin
-/// while the last paths of those before are still on their way: only so are lanes full where few
-/// paths scatter a thousand times.
+/// Jobs whose paths are in flight together, and what these have found so far. The next job may
+/// begin while the last paths of those before are still on their way: only so are lanes full where
+/// few paths scatter a thousand times.
 class OpenJobs {
  public:
   /// Forgets all jobs.
@@ -33,7 +33,7 @@ class OpenJobs {
 
   struct Job {
     PathJob job;
-    std::size_t first = 0;       ///< Place of its first path's result.
+    std::size_t first = 0;  ///< Place of its first path's result.
     std::size_t paths = 0;
     std::size_t paths_left = 0;  ///< Those that have not ended.
     bool is_open = false;

@@ -103,5 +103,4 @@ class SceneMedium {
   bool is_homogeneous_ = false;
 };
 
-
 }  // namespace freepath

@@ -201,6 +201,7 @@ void SceneWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
 
 bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
   const float throughput = largest_magnitude(path.throughput);
+  if (throughput == 0) return false;
   if (throughput >= setup_.roulette_threshold) return true;
   const float survival = throughput / setup_.roulette_threshold;
   if (random.uniform() >= survival) return false;
@@ -255,6 +256,10 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
     return;
   }
   path.throughput *= next->weight;
+  if (is_black(path.throughput)) {  // no channel of the surface has what was left of the path's
+    path.is_dead = true;
+    return;
+  }
   path.is_coloured = true;  // equal at these wavelengths is not equal at all
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;

@@ -287,7 +287,7 @@ void SceneWavefront::escape(ScenePath& path) {
   const Channels seen = light_throughput(path, in_rgb) * light.radiance * share;
   if (jobs_.layers.on() && path.scatterings == 0) {
     jobs_.layers.background(path.result,
-                       rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
+                            rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
   }
   (in_rgb ? path.rgb : path.radiance) += seen;
 }
@@ -300,7 +300,7 @@ void SceneWavefront::record_event(ScenePath& path, float t, const Channels& albe
   if (!jobs_.layers.on()) return;
   const Vec3f position = path.origin + path.direction * t + Vec3f(scene_.origin);
   jobs_.layers.event(path.result, normal, position,
-                1.0F / static_cast<float>(setup_.factory->paths_per_sample()));
+                     1.0F / static_cast<float>(setup_.factory->paths_per_sample()));
 }
 
 Spectrum SceneWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
@@ -333,8 +333,7 @@ void SceneWavefront::finish(ScenePath& path) {
   sample.depth_weight = path.sample.depth_weight;
 }
 
-void SceneWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample,
-                                  Film& film) const {
+void SceneWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const {
   const PathJob& job = done.job;
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
   Channels radiance;

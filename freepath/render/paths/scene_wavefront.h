@@ -162,7 +162,7 @@ class SceneWavefront {
   bool has_more_jobs_ = false;
   /// The newest job's samples (pixel · samples + sample) in the order in which they start.
   std::vector<uint32_t> order_;
-  std::vector<uint32_t> sets_, begin_of_set_;  // for that order
+  std::vector<uint32_t> sets_, begin_of_set_;     // for that order
   const PathColors* colors_of_sample_ = nullptr;  // of the sample whose paths start now
   bool records_spectra_ = false;
   PixelWindow window_;  // of the film at work

@@ -220,7 +220,7 @@ class AreaShape::QuadricKind : public Kind {
       }
     }
     area_ = traced_.quadric.area() * sum / (kSteps * kSteps);
-    const AffineMap& map = traced_.object_to_part;
+    const AffineTransform& map = traced_.object_to_part;
     scale_ = map.x.length();
     constexpr double kSame = 1e-9;
     const auto is_small = [&](double value, double reference) {

@@ -17,7 +17,7 @@ bool overlaps_along(const Vec3d& axis, const std::array<Vec3d, 3>& corners, cons
   return std::min({a, b, c}) <= reach && std::max({a, b, c}) >= -reach;
 }
 
-Box3d around(std::span<const Vec3d> points, const AffineMap& map) {
+Box3d around(std::span<const Vec3d> points, const AffineTransform& map) {
   Box3d box;
   for (const Vec3d& p : points) box.extendBy(map.point(p));
   return box;
@@ -64,8 +64,9 @@ bool triangle_meets_box(const std::array<Vec3d, 3>& triangle, const Box3d& box) 
   return true;
 }
 
-bool part_meets_box(const TracedPart& part, const AffineMap& to_world, const AffineMap& to_part,
-                    std::span<const uint32_t> shapes, const Box3d& exact_box) {
+bool part_meets_box(const TracedPart& part, const AffineTransform& to_world,
+                    const AffineTransform& to_part, std::span<const uint32_t> shapes,
+                    const Box3d& exact_box) {
   if (exact_box.isEmpty()) return false;
   const Box3d box = padded(exact_box);
   const auto is_wanted = [&](const TracedShape& shape) {

@@ -17,7 +17,8 @@ std::array<Vec3d, 8> corners_of(const Box3d& box);
 bool triangle_meets_box(const std::array<Vec3d, 3>& corners, const Box3d& box);
 
 /// @param to_world, to_part between the space of the part and that of the box
-bool part_meets_box(const TracedPart& part, const AffineMap& to_world, const AffineMap& to_part,
-                    std::span<const uint32_t> shapes, const Box3d& box);
+bool part_meets_box(const TracedPart& part, const AffineTransform& to_world,
+                    const AffineTransform& to_part, std::span<const uint32_t> shapes,
+                    const Box3d& box);
 
 }  // namespace freepath

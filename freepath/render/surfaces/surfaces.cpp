@@ -100,8 +100,8 @@ class Surfaces::Data {
 
  private:
   void add_instances(const SurfaceScene& scene);
-  void note_offsets(const TracedPart& part, const AffineMap& to_world);
-  void note_offset(const TracedShape& shape, const AffineMap& to_world);
+  void note_offsets(const TracedPart& part, const AffineTransform& to_world);
+  void note_offset(const TracedShape& shape, const AffineTransform& to_world);
   SceneHandle new_scene() const;
 };
 
@@ -120,7 +120,7 @@ Surfaces::Data::Data(const SurfaceScene& description, const Vec3d& ray_origin)
   world = std::make_unique<TracedPart>(description.shapes, origin);
   scene = new_scene();
   world->attach(device.get(), scene.get());
-  note_offsets(*world, AffineMap());
+  note_offsets(*world, AffineTransform());
   for (const auto& group : description.groups) {
     groups.push_back(std::make_unique<TracedPart>(group, middle(group)));
     group_scenes.push_back(new_scene());
@@ -147,8 +147,9 @@ void Surfaces::Data::add_instances(const SurfaceScene& description) {
       fail("the transform of instance {} has no inverse; scale by nothing but 0",
            rule.instances.size());
     }
-    rule.instances.push_back({instance.group, AffineMap(matrix), AffineMap(matrix.inverse())});
-    const AffineMap& map = rule.instances.back().part_to_world;
+    rule.instances.push_back(
+        {instance.group, AffineTransform(matrix), AffineTransform(matrix.inverse())});
+    const AffineTransform& map = rule.instances.back().part_to_world;
     note_offsets(*groups[instance.group], map);
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, group_scenes[instance.group].get());
@@ -162,13 +163,13 @@ void Surfaces::Data::add_instances(const SurfaceScene& description) {
   }
 }
 
-void Surfaces::Data::note_offsets(const TracedPart& part, const AffineMap& to_world) {
+void Surfaces::Data::note_offsets(const TracedPart& part, const AffineTransform& to_world) {
   for (const auto& mesh : part.triangles) note_offset(mesh, to_world);
   for (const auto& mesh : part.patches) note_offset(mesh, to_world);
   for (const auto& quadric : part.quadrics) note_offset(quadric, to_world);
 }
 
-void Surfaces::Data::note_offset(const TracedShape& shape, const AffineMap& to_world) {
+void Surfaces::Data::note_offset(const TracedShape& shape, const AffineTransform& to_world) {
   // Many roundings of doubles of this size.
   constexpr double kRoundings = 0x1p-42;
   double largest = std::max({std::abs(to_world.translation.x), std::abs(to_world.translation.y),
@@ -398,7 +399,8 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
 
 bool Surfaces::intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const {
   const Box3d relative(box.min - data_->origin, box.max - data_->origin);
-  if (part_meets_box(*data_->world, AffineMap(), AffineMap(), shapes, relative)) return true;
+  if (part_meets_box(*data_->world, AffineTransform(), AffineTransform(), shapes, relative))
+    return true;
   return std::any_of(data_->rule.instances.begin(), data_->rule.instances.end(),
                      [&](const TracedInstance& instance) {
                        return part_meets_box(*data_->groups[instance.group], instance.part_to_world,

@@ -35,7 +35,7 @@ void check_device(RTCDevice device);
 /// Maps between an instance and the world relative to the origin of the rays.
 struct TracedInstance {
   uint32_t group = 0;
-  AffineMap part_to_world, world_to_part;
+  AffineTransform part_to_world, world_to_part;
 };
 
 enum class QueryKind { kNearest, kOcclusion, kCount, kTies, kAll };
@@ -54,7 +54,7 @@ struct PlaceRule {
   /// The ray in the space of what a key is of.
   LocalRay local_ray(const LocalRay& world, uint32_t instance) const {
     if (instance == kNoInstance) return world;
-    const AffineMap& map = instances[instance].world_to_part;
+    const AffineTransform& map = instances[instance].world_to_part;
     return {map.point(world.origin), map.vector(world.direction)};
   }
 

@@ -15,7 +15,7 @@ Matrix4d to_part(const SurfaceShape& shape, const Vec3d& origin) {
 }
 
 TracedShape common(const SurfaceShape& shape) {
-  const bool swaps = AffineMap(shape.object_to_world).determinant() < 0;
+  const bool swaps = AffineTransform(shape.object_to_world).determinant() < 0;
   return {shape.shape, shape.first_primitive, shape.is_boundary,
           shape.reverse_orientation != swaps};
 }
@@ -24,11 +24,11 @@ template <class Mesh>
 TracedVertices trace_vertices(const SurfaceShape& shape, const Mesh& mesh, const Vec3d& origin) {
   TracedVertices traced{common(shape), {}, {}, {}, {}};
   const Matrix4d matrix = to_part(shape, origin);
-  const AffineMap map(matrix);
+  const AffineTransform map(matrix);
   traced.positions.reserve(mesh.positions.size() + 1);
   for (const Vec3d& p : mesh.positions) traced.positions.emplace_back(map.point(p));
   traced.positions.emplace_back(0.0F);
-  const AffineMap inverse(matrix.inverse());
+  const AffineTransform inverse(matrix.inverse());
   const float sign = shape.reverse_orientation ? -1.0F : 1.0F;
   traced.normals.reserve(mesh.normals.size());
   for (const Vec3f& n : mesh.normals) {
@@ -211,8 +211,8 @@ TracedPatches trace_patches(const SurfaceShape& shape, const Vec3d& origin) {
 
 TracedQuadric trace_quadric(const SurfaceShape& shape, const Vec3d& origin) {
   const Matrix4d matrix = to_part(shape, origin);
-  return {common(shape), Quadric::from(shape.geometry).value(), AffineMap(matrix),
-          AffineMap(matrix.inverse())};
+  return {common(shape), Quadric::from(shape.geometry).value(), AffineTransform(matrix),
+          AffineTransform(matrix.inverse())};
 }
 
 }  // namespace freepath

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "freepath/base/vector.h"
-#include "freepath/render/surfaces/affine_map.h"
+#include "freepath/render/surfaces/affine_transform.h"
 #include "freepath/render/surfaces/bilinear_patch.h"
 #include "freepath/render/surfaces/quadric.h"
 #include "freepath/render/surfaces/shape_geometry.h"
@@ -85,7 +85,7 @@ struct TracedPatches : TracedVertices {
 
 struct TracedQuadric : TracedShape {
   Quadric quadric;
-  AffineMap object_to_part, part_to_object;
+  AffineTransform object_to_part, part_to_object;
 
   LocalRay to_object(const LocalRay& ray) const {
     return {part_to_object.point(ray.origin), part_to_object.vector(ray.direction)};

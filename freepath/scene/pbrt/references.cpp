@@ -23,10 +23,10 @@ int resolve(const Names& names, const std::string& name, const SourceLocation& l
 }  // namespace
 
 void SceneParser::resolve_references() {
-  for (const Reference& reference : material_references_) {
+  for (const NameUse& reference : material_references_) {
     resolve(material_names_, reference.name, reference.location, "material");
   }
-  for (const Reference& reference : medium_references_) {
+  for (const NameUse& reference : medium_references_) {
     resolve(medium_names_, reference.name, reference.location, "medium");
   }
   for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {

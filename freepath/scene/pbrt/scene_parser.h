@@ -35,8 +35,8 @@ struct GraphicsState {
   std::array<std::shared_ptr<const SharedParameters>, kAttributeTargets.size()> attributes;
 };
 
-/// Names in use, with the places of what refers to them; checked when all is read.
-struct Reference {
+/// A name that a statement refers to, and where; checked when all is read.
+struct NameUse {
   std::string name;
   SourceLocation location;
 };
@@ -178,7 +178,7 @@ class SceneParser {
 
   std::map<std::string, int, std::less<>> material_names_, medium_names_, object_names_;
   std::map<std::string, int, std::less<>> float_texture_names_, spectrum_texture_names_;
-  std::vector<Reference> material_references_, medium_references_;
+  std::vector<NameUse> material_references_, medium_references_;
   SharedParameters attribute_parameters_;      ///< All that Attribute directives have set.
   std::vector<std::string> shape_materials_;   ///< For each shape, the name of its material.
   std::vector<std::string> instance_objects_;  ///< For each instance, the name of its object.

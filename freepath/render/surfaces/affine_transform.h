@@ -6,12 +6,12 @@
 namespace freepath {
 
 /// A point is a row: p.x * x + p.y * y + p.z * z + translation.
-struct AffineMap {
+struct AffineTransform {
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   Vec3d translation{0, 0, 0};
 
-  AffineMap() = default;
-  explicit AffineMap(const Matrix4d& m)
+  AffineTransform() = default;
+  explicit AffineTransform(const Matrix4d& m)
       : x(m[0][0], m[0][1], m[0][2]),
         y(m[1][0], m[1][1], m[1][2]),
         z(m[2][0], m[2][1], m[2][2]),
