@@ -19,7 +19,9 @@ TEST(MediaPlaces, AreWhatTheSetsSay) {
   std::mt19937 random(3);
   const auto any = [&](int count) { return static_cast<int>(random() % count); };
   std::string text = kUnlimited + film() + "Camera \"perspective\"\nWorldBegin\n";
-  for (int medium = 0; medium < kMedia; ++medium) text += homogeneous("m" + std::to_string(medium));
+  for (int medium = 0; medium < kMedia; ++medium) {
+    text += "MakeNamedMedium \"m" + std::to_string(medium) + "\" \"string type\" \"homogeneous\"\n";
+  }
   const auto name = [&](int medium) {
     return medium == kMedia ? std::string() : "m" + std::to_string(medium);
   };
