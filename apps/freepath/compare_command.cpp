@@ -19,9 +19,9 @@
 #include "apps/freepath/report_folder.h"
 #include "apps/freepath/subjects.h"
 #include "freepath/base/error.h"
-#include "freepath/evaluation/comparison_charts.h"
-#include "freepath/evaluation/comparison_figures.h"
-#include "freepath/evaluation/comparison_report.h"
+#include "freepath/study/comparison_charts.h"
+#include "freepath/study/comparison_figures.h"
+#include "freepath/study/comparison_report.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {

@@ -7,9 +7,9 @@
 
 #include "apps/freepath/denoiser.h"
 #include "apps/freepath/tev_display.h"
-#include "freepath/render/layers.h"
-#include "freepath/render/pixel_window.h"
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
+#include "freepath/sensors/layers.h"
+#include "freepath/sensors/pixel_window.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;

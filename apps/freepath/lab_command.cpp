@@ -19,9 +19,9 @@
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
-#include "freepath/evaluation/lab.h"
-#include "freepath/evaluation/lab_numbers.h"
-#include "freepath/evaluation/lab_report.h"
+#include "freepath/study/lab.h"
+#include "freepath/study/lab_numbers.h"
+#include "freepath/study/lab_report.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 

@@ -11,8 +11,8 @@
 
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/render_volumes.h"
-#include "freepath/render/paths/path_scene.h"
-#include "freepath/render/renderer.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/paths/renderer.h"
 #include "freepath/scene/volume_scene.h"
 
 namespace freepath::program {

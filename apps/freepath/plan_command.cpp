@@ -17,8 +17,8 @@
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/subjects.h"
 #include "freepath/base/error.h"
-#include "freepath/evaluation/comparison_figures.h"
-#include "freepath/evaluation/plan.h"
+#include "freepath/study/comparison_figures.h"
+#include "freepath/study/plan.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 
 namespace freepath::program {
 

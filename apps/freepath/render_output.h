@@ -8,7 +8,7 @@
 
 #include "apps/freepath/film_options.h"
 #include "freepath/io/aside_file.h"
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 
 namespace freepath::program {
 

@@ -10,7 +10,7 @@
 #include "apps/freepath/render_output.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
-#include "freepath/render/paths/scene_renderer.h"
+#include "freepath/paths/scene_renderer.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {

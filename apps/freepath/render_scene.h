@@ -8,9 +8,9 @@
 
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/parse.h"
-#include "freepath/render/paths/path_scene.h"
-#include "freepath/render/renderer.h"
-#include "freepath/scene/build/scene_builder.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/paths/renderer.h"
+#include "freepath/scene/assembly/scene_builder.h"
 
 namespace freepath::program {
 

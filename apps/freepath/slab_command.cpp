@@ -19,7 +19,7 @@
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/media/phase/parse_phase_function.h"
-#include "freepath/render/slab.h"
+#include "freepath/paths/slab.h"
 
 namespace freepath::program {
 namespace {

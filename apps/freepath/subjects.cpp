@@ -10,7 +10,7 @@
 #include "apps/freepath/render_scene.h"
 #include "freepath/io/content_digest.h"
 #include "freepath/media/phase/parse_phase_function.h"
-#include "freepath/render/paths/scene_renderer.h"
+#include "freepath/paths/scene_renderer.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {

@@ -10,8 +10,8 @@
 
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
-#include "freepath/evaluation/subject.h"
 #include "freepath/media/medium.h"
+#include "freepath/study/subject.h"
 
 namespace freepath::program {
 

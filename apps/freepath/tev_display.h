@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "freepath/io/image.h"
-#include "freepath/render/film.h"
+#include "freepath/sensors/film.h"
 
 namespace freepath::program {
 

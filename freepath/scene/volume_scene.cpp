@@ -10,9 +10,9 @@
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
+#include "freepath/lights/sky.h"
+#include "freepath/lights/thermal_radiance.h"
 #include "freepath/media/walk_space.h"
-#include "freepath/render/sky.h"
-#include "freepath/render/thermal_radiance.h"
 #include "freepath/spectra/rgb_color_space.h"
 
 namespace freepath {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "freepath/io/volume.h"
+#include "freepath/lights/lights.h"
 #include "freepath/media/medium.h"
-#include "freepath/render/camera.h"
-#include "freepath/render/lights.h"
+#include "freepath/sensors/camera.h"
 
 namespace freepath {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 #include "tests/certify/planted.h"
 #include "tests/scene/rendered_scenes.h"
 #include "tests/transport/media_for_tests.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "freepath/render/surfaces/ply_file.h"
+#include "freepath/geometry/ply_file.h"
 #include "tests/fuzz/fuzz_checks.h"
 
 namespace freepath::fuzz {

@@ -1,4 +1,4 @@
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/henyey_greenstein.h"
 
 #include <gtest/gtest.h>
 

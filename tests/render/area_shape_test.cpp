@@ -1,4 +1,4 @@
-#include "freepath/render/surfaces/area_shape.h"
+#include "freepath/geometry/area_shape.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "freepath/render/surfaces/spherical_triangle.h"
+#include "freepath/geometry/spherical_triangle.h"
 #include "tests/render/surface_rays.h"
 #include "tests/render/surface_references.h"
 #include "tests/statistics.h"

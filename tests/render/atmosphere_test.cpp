@@ -1,6 +1,6 @@
 // The atmosphere of the default sky, against the exact transport of slabs and published formulas.
 
-#include "freepath/render/atmosphere.h"
+#include "freepath/lights/atmosphere.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/media/phase/parse_phase_function.h"
-#include "freepath/render/slab.h"
+#include "freepath/paths/slab.h"
 
 namespace freepath {
 namespace {

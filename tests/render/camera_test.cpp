@@ -1,4 +1,4 @@
-#include "freepath/render/camera.h"
+#include "freepath/sensors/camera.h"
 
 #include <gtest/gtest.h>
 

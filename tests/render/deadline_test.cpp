@@ -1,6 +1,6 @@
 // When a pass over all pixels has to end: times are given, not waited for.
 
-#include "freepath/render/deadline.h"
+#include "freepath/paths/deadline.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Directions towards emissive media: their density against quadrature and against what is drawn.
 
-#include "freepath/render/paths/emission_guide.h"
+#include "freepath/paths/emission_guide.h"
 
 #include <gtest/gtest.h>
 

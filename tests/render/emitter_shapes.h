@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/base/tangent_frame.h"
-#include "freepath/render/lights/emitter_geometry.h"
+#include "freepath/lights/emitter_geometry.h"
 
 namespace freepath::testing {
 

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "freepath/base/random.h"
-#include "freepath/render/materials/dielectric_interface.h"
-#include "freepath/render/materials/fresnel.h"
-#include "freepath/render/materials/trowbridge_reitz.h"
+#include "freepath/materials/dielectric_interface.h"
+#include "freepath/materials/fresnel.h"
+#include "freepath/materials/trowbridge_reitz.h"
 #include "freepath/spectra/named_spectra.h"
 #include "tests/statistics.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {

@@ -1,4 +1,4 @@
-#include "freepath/render/film.h"
+#include "freepath/sensors/film.h"
 
 #include <gtest/gtest.h>
 

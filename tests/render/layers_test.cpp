@@ -1,6 +1,6 @@
 // Layers of volumes: that they are what they are called, whatever the walk, and add up.
 
-#include "freepath/render/layers.h"
+#include "freepath/sensors/layers.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {

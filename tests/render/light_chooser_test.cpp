@@ -1,6 +1,6 @@
 // Choosing one of many lights: the probabilities are those of the draws, and miss no light.
 
-#include "freepath/render/lights/light_chooser.h"
+#include "freepath/lights/light_chooser.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <numeric>
 #include <vector>
 
+#include "freepath/base/distributions.h"
 #include "freepath/base/random.h"
 #include "freepath/base/tangent_frame.h"
-#include "freepath/render/sampling.h"
 #include "tests/statistics.h"
 
 namespace freepath {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "freepath/base/error.h"
-#include "freepath/render/lights/photometry.h"
-#include "freepath/render/lights/scene_lights.h"
+#include "freepath/lights/photometry.h"
+#include "freepath/lights/scene_lights.h"
 #include "freepath/spectra/illuminants.h"
 #include "tests/render/scene_lights_cases.h"
 

@@ -1,6 +1,6 @@
 // Environment, sky and sun, alone and as the mixture that the integrator samples.
 
-#include "freepath/render/lights.h"
+#include "freepath/lights/lights.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
-#include "freepath/render/sky.h"
+#include "freepath/lights/sky.h"
 #include "tests/render/expect_near.h"
 #include "tests/statistics.h"
 

@@ -1,4 +1,4 @@
-#include "freepath/render/surfaces/loop_subdivision.h"
+#include "freepath/geometry/loop_subdivision.h"
 
 #include <gtest/gtest.h>
 

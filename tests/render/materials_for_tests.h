@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "freepath/render/materials/material.h"
-#include "freepath/render/textures/texture_table.h"
+#include "freepath/materials/material.h"
+#include "freepath/materials/textures/texture_table.h"
 #include "freepath/spectra/named_spectra.h"
 #include "freepath/spectra/rgb_color_space.h"
 #include "freepath/spectra/spectrum_table.h"

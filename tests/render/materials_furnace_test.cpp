@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "freepath/base/error.h"
-#include "freepath/render/materials/fresnel.h"
+#include "freepath/materials/fresnel.h"
 #include "tests/render/materials_for_tests.h"
 #include "tests/statistics.h"
 

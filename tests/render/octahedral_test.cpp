@@ -1,6 +1,6 @@
 // The equal-area map of the sphere, and images on it.
 
-#include "freepath/render/lights/octahedral.h"
+#include "freepath/base/octahedral.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "freepath/render/lights/octahedral_environment.h"
+#include "freepath/lights/octahedral_environment.h"
 #include "tests/render/scene_lights_cases.h"
 #include "tests/statistics.h"
 

@@ -1,6 +1,6 @@
 // Jobs of a wavefront: done whole or not at all.
 
-#include "freepath/render/path_wavefront.h"
+#include "freepath/paths/path_wavefront.h"
 
 #include <gtest/gtest.h>
 

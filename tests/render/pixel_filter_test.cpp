@@ -1,4 +1,4 @@
-#include "freepath/render/cameras/pixel_filter.h"
+#include "freepath/sensors/pixel_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "freepath/render/surfaces/ply_file.h"
+#include "freepath/geometry/ply_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

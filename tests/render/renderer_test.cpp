@@ -1,6 +1,6 @@
 // The renderer against furnaces and closed forms, and the independence of its pictures.
 
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "freepath/render/deadline.h"
+#include "freepath/paths/deadline.h"
 #include "tests/counted_clock.h"
 #include "tests/statistics.h"
 #include "tests/transport/media_for_tests.h"

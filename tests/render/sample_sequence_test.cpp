@@ -1,4 +1,4 @@
-#include "freepath/render/cameras/sample_sequence.h"
+#include "freepath/sensors/sample_sequence.h"
 
 #include <gtest/gtest.h>
 

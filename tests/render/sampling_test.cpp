@@ -1,4 +1,4 @@
-#include "freepath/render/sampling.h"
+#include "freepath/base/distributions.h"
 
 #include <gtest/gtest.h>
 

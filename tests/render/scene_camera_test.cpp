@@ -1,4 +1,4 @@
-#include "freepath/render/cameras/scene_camera.h"
+#include "freepath/sensors/scene_camera.h"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "freepath/base/octahedral.h"
 #include "freepath/base/random.h"
-#include "freepath/render/lights/octahedral.h"
-#include "freepath/render/lights/scene_lights.h"
-#include "freepath/render/sky.h"
+#include "freepath/lights/scene_lights.h"
+#include "freepath/lights/sky.h"
 #include "freepath/spectra/blackbody.h"
 #include "freepath/spectra/rgb_spectrum.h"
 #include "tests/render/emitter_shapes.h"

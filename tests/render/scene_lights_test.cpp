@@ -1,6 +1,6 @@
 // Every light of scenes: that draws have the density that rays find, and estimate what rays see.
 
-#include "freepath/render/lights/scene_lights.h"
+#include "freepath/lights/scene_lights.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "freepath/render/lights/photometry.h"
+#include "freepath/lights/photometry.h"
 #include "freepath/spectra/wavelengths.h"
 #include "tests/render/scene_lights_cases.h"
 #include "tests/statistics.h"

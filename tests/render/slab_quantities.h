@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "freepath/render/slab.h"
+#include "freepath/paths/slab.h"
 #include "tests/statistics.h"
 
 namespace freepath::testing {

@@ -1,6 +1,6 @@
 // Paths that split in thick, absorbing layers, against exponential laws and an integral equation.
 
-#include "freepath/render/slab_splitting.h"
+#include "freepath/paths/slab_splitting.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "freepath/render/slab.h"
+#include "freepath/paths/slab.h"
 #include "tests/render/slab_quantities.h"
 
 namespace freepath::testing {

@@ -1,6 +1,6 @@
 // Properties of slabs: conservation, exponential laws, layers, independence of threads, errors.
 
-#include "freepath/render/slab.h"
+#include "freepath/paths/slab.h"
 
 #include <gtest/gtest.h>
 

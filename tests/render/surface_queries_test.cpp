@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "freepath/render/surfaces/surfaces.h"
+#include "freepath/geometry/surfaces.h"
 #include "tests/render/surface_rays.h"
 
 namespace freepath::testing {

@@ -8,7 +8,7 @@
 
 #include "freepath/base/random.h"
 #include "freepath/base/vector.h"
-#include "freepath/render/surfaces/surfaces.h"
+#include "freepath/geometry/surfaces.h"
 
 namespace freepath::testing {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "freepath/render/surfaces/shape_geometry.h"
+#include "freepath/geometry/shape_geometry.h"
 
 namespace freepath::testing {
 

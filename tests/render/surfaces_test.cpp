@@ -1,4 +1,4 @@
-#include "freepath/render/surfaces/surfaces.h"
+#include "freepath/geometry/surfaces.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Noise, and what textures make of it, in closed form.
 
-#include "freepath/render/textures/texture_noise.h"
+#include "freepath/materials/textures/texture_noise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "freepath/render/textures/texture_table.h"
+#include "freepath/materials/textures/texture_table.h"
 #include "freepath/spectra/rgb_color_space.h"
 
 namespace freepath::testing {

@@ -10,8 +10,8 @@
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
-#include "freepath/render/textures/texture_noise.h"
-#include "freepath/render/textures/texture_table.h"
+#include "freepath/materials/textures/texture_noise.h"
+#include "freepath/materials/textures/texture_table.h"
 #include "freepath/spectra/rgb_color_space.h"
 
 namespace freepath::testing {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "freepath/base/error.h"
-#include "freepath/scene/build/scene_builder.h"
+#include "freepath/scene/assembly/scene_builder.h"
 #include "tests/io/volume_oddities.h"
 #include "tests/scene/scenes_in_memory.h"
 #include "tests/scene/twin_scenes.h"

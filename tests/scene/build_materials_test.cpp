@@ -9,8 +9,8 @@
 #include <utility>
 #include <variant>
 
-#include "freepath/scene/build/build_materials.h"
-#include "freepath/scene/build/build_textures.h"
+#include "freepath/scene/assembly/build_materials.h"
+#include "freepath/scene/assembly/build_textures.h"
 #include "freepath/spectra/named_spectra.h"
 #include "tests/scene/built_scenes.h"
 #include "tests/scene/expect_near.h"

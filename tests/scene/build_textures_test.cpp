@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "freepath/io/image.h"
-#include "freepath/render/textures/texture_noise.h"
+#include "freepath/materials/textures/texture_noise.h"
 #include "tests/scene/built_scenes.h"
 #include "tests/scene/expect_near.h"
 

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "freepath/scene/build/build_materials.h"
-#include "freepath/scene/build/build_textures.h"
+#include "freepath/scene/assembly/build_materials.h"
+#include "freepath/scene/assembly/build_textures.h"
 #include "freepath/spectra/rgb_color_space.h"
 #include "tests/scene/scenes_in_memory.h"
 

@@ -1,6 +1,6 @@
 // The procedural cloud of the scene language.
 
-#include "freepath/scene/build/cloud_density.h"
+#include "freepath/scene/assembly/cloud_density.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "freepath/io/image.h"
-#include "freepath/render/paths/scene_wavefront.h"
-#include "freepath/scene/build/scene_builder.h"
+#include "freepath/paths/scene_wavefront.h"
+#include "freepath/scene/assembly/scene_builder.h"
 #include "tests/scene/scenes_in_memory.h"
 #include "tests/statistics.h"
 

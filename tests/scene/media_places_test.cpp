@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "freepath/render/paths/media_places.h"
+#include "freepath/paths/media_places.h"
 #include "tests/scene/rendered_scenes.h"
 
 namespace freepath::testing {

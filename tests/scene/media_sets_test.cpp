@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/base/random.h"
-#include "freepath/render/paths/media_set.h"
+#include "freepath/paths/media_set.h"
 #include "tests/scene/rendered_scenes.h"
 
 namespace freepath::testing {

@@ -13,8 +13,8 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/vector.h"
-#include "freepath/render/paths/scene_renderer.h"
-#include "freepath/scene/build/scene_builder.h"
+#include "freepath/paths/scene_renderer.h"
+#include "freepath/scene/assembly/scene_builder.h"
 #include "freepath/scene/pbrt/parser.h"
 #include "tests/scene/scenes_in_memory.h"
 #include "tests/statistics.h"

@@ -5,7 +5,7 @@
 #include <set>
 #include <string_view>
 
-#include "freepath/scene/build/scattering_presets.h"
+#include "freepath/scene/assembly/scattering_presets.h"
 
 namespace freepath {
 namespace {

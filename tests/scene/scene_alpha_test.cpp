@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "freepath/render/paths/alpha_chance.h"
-#include "freepath/render/paths/media_set.h"
+#include "freepath/paths/alpha_chance.h"
+#include "freepath/paths/media_set.h"
 #include "tests/scene/lit_plane.h"
 
 namespace freepath::testing {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "freepath/render/renderer.h"
+#include "freepath/paths/renderer.h"
 #include "freepath/scene/volume_scene.h"
 #include "freepath/spectra/blackbody.h"
 #include "freepath/spectra/cie_observer.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "freepath/base/vector.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/henyey_greenstein.h"
 
 namespace freepath {
 

@@ -3,7 +3,7 @@
 
 #include "freepath/base/vector.h"
 #include "freepath/media/phase/draine.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/henyey_greenstein.h"
 
 namespace freepath {
 

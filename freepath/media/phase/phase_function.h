@@ -9,10 +9,10 @@
 #include "freepath/base/vector.h"
 #include "freepath/media/phase/draine.h"
 #include "freepath/media/phase/droplets.h"
+#include "freepath/media/phase/henyey_greenstein.h"
 #include "freepath/media/phase/phase_mixture.h"
 #include "freepath/media/phase/rayleigh.h"
 #include "freepath/media/phase/tabulated_phase.h"
-#include "freepath/media/phase_function.h"
 
 namespace freepath {
 

@@ -7,7 +7,7 @@
 #include "freepath/base/vector.h"
 #include "freepath/media/phase/cubic.h"
 #include "freepath/media/phase/direction_around.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/henyey_greenstein.h"
 
 namespace freepath {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "freepath/base/vector.h"
-#include "freepath/media/phase_function.h"
+#include "freepath/media/phase/henyey_greenstein.h"
 
 namespace freepath {
 

@@ -1,0 +1,194 @@
+#pragma once
+/// @file The surfaces of a scene, to be met by rays.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "freepath/base/vector.h"
+#include "freepath/geometry/shape_geometry.h"
+#include "freepath/geometry/surface_point.h"
+
+namespace freepath {
+
+/// SurfaceHit::instance of shapes that are in no group.
+inline constexpr uint32_t kNoInstance = 0xFFFFFFFF;
+
+/// Which intersection of a ray with all surfaces: the same for the same ray, whatever else there
+/// is.
+struct SurfaceKey {
+  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
+  uint32_t geometry = 0;            ///< Of what traces the shapes.
+  uint32_t primitive = 0;           ///< Of the geometry.
+  uint32_t root = 0;                ///< Which of the points where a line meets the primitive.
+
+  friend bool operator==(const SurfaceKey&, const SurfaceKey&) = default;
+  friend bool operator<(const SurfaceKey& a, const SurfaceKey& b) {
+    return std::tie(a.instance, a.geometry, a.primitive, a.root) <
+           std::tie(b.instance, b.geometry, b.primitive, b.root);
+  }
+};
+
+/// A place on a ray where a surface is met, in double precision.
+struct RayPlace {
+  double t = 0;  ///< position = origin + t direction
+  /// Surfaces no farther than this along the ray are at the same place [t]: a new ray from here may
+  /// start on either side of them, since positions in floats tell them apart no better.
+  double reach = 0;
+  SurfaceKey key;
+
+  /// In the order in which a ray meets them, which is strict.
+  bool is_before(const RayPlace& other) const {
+    return t < other.t || (t == other.t && key < other.key);
+  }
+  bool is_tied(const RayPlace& other) const {
+    const double gap = t < other.t ? other.t - t : t - other.t;
+    return gap <= reach || gap <= other.reach;
+  }
+};
+
+/// Where a ray meets a surface.
+struct SurfaceHit {
+  float t = 0;  ///< position = origin + t direction
+  SurfacePoint point;
+  bool from_inside = false;         ///< The ray leaves the shape: direction · normal > 0.
+  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
+  RayPlace place;
+  bool is_tied = false;  ///< Another surface is at the same place; see Surfaces::find_ties.
+};
+
+/// Where a ray goes through a shape that is a mere boundary.
+struct BoundaryCrossing {
+  RayPlace place;
+  uint32_t shape = 0;
+  bool enters = false;  ///< direction · normal < 0
+
+  bool is_same(const BoundaryCrossing& other) const {
+    return shape == other.shape && enters == other.enters &&
+           place.key.instance == other.place.key.instance && place.is_tied(other.place);
+  }
+};
+
+/// The nearest crossings of a ray in the order of their places, each once even where the ray goes
+/// through the common edge of two triangles.
+class BoundaryCrossings {
+ public:
+  static constexpr uint32_t kCapacity = 32;
+
+  std::span<const BoundaryCrossing> all() const { return {crossings_.data(), count_}; }
+  bool empty() const { return count_ == 0; }
+  /// There are more, all of them beyond the last of these.
+  bool overflowed() const { return overflowed_; }
+
+  void clear();
+  void add(const BoundaryCrossing& crossing);
+
+ private:
+  std::array<BoundaryCrossing, kCapacity> crossings_;
+  uint32_t count_ = 0;
+  bool overflowed_ = false;
+};
+
+/// A surface at the place of another.
+struct TiedSurface {
+  RayPlace place;
+  uint32_t shape = 0;
+  bool enters = false;  ///< direction · normal < 0
+  float u = 0, v = 0;   ///< Of the primitive; for Surfaces::describe.
+};
+
+/// Where a shadow ray ends.
+struct ShadowEnd {
+  float distance = 0;  ///< [t]
+  /// The point on a shape that it ends at, which is not in its own shadow, nor in that of a surface
+  /// at the same place; SurfacePoint::shape and primitive.
+  struct Target {
+    uint32_t shape = 0, primitive = 0;
+  };
+  std::optional<Target> target = {};
+};
+
+/// What surfaces cost, counted, so that tests see how it grows.
+struct SurfaceCosts {
+  uint64_t positions = 0;  ///< Those of meshes that were looked at for bounds.
+  uint64_t bytes = 0;      ///< Held by Embree.
+};
+
+/// All surfaces of a scene. Positions are floats relative to `origin` of the constructor [world];
+/// directions need not be unit vectors, and t counts in their length. What is const may be called
+/// by any number of threads, and allocates nothing.
+///
+/// Triangles are found in floats, quadrics and patches in doubles; where on the ray they are, and
+/// which is the nearest, is decided in doubles, for the surfaces as they were rounded to floats.
+/// Surfaces at one place are all met: find_ties() tells which are there.
+class Surfaces {
+ public:
+  /// @param origin that positions are relative to [world]: near what is seen
+  /// @throws Error for bad geometry, beginning with the number of the shape
+  Surfaces(const SurfaceScene& scene, const Vec3d& origin);
+  ~Surfaces();
+  Surfaces(Surfaces&&) noexcept;
+  Surfaces& operator=(Surfaces&&) noexcept;
+
+  const Vec3d& origin() const;
+  /// Around all that is there [world, relative to the origin]; empty if nothing is.
+  Box3f bounds() const;
+
+  SurfaceCosts costs() const;
+
+  /// The nearest surface at t in (t_min, t_max), boundaries included.
+  /// @param looked_at counts the surfaces that were tried; may be null
+  std::optional<SurfaceHit> intersect(const Vec3f& origin, const Vec3f& direction, float t_min,
+                                      float t_max, uint64_t* looked_at = nullptr) const;
+  /// All other surfaces at the place where a ray meets one, in the order of their places, each once
+  /// even on the common edge of two triangles. `ties` is overwritten.
+  /// @param hit of this ray
+  void find_ties(const Vec3f& origin, const Vec3f& direction, const SurfaceHit& hit,
+                 std::vector<TiedSurface>& ties) const;
+  /// A tied surface as if the ray had met it alone.
+  SurfaceHit describe(const Vec3f& origin, const Vec3f& direction, const TiedSurface& tied) const;
+  /// Whether a ray from a point near the place, in the direction of the ray that met it there,
+  /// starts beyond the surface, so that it won't meet it (again).
+  bool is_beyond(const RayPlace& place, const Vec3f& origin, const Vec3f& direction) const;
+
+  /// Whether any shape but boundaries is met at t in (0, end). If none is, `crossings` are those
+  /// of the boundaries; otherwise they are of no use.
+  /// @param after crossings up to this one are left out: the last of those that overflowed
+  bool occluded(const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
+                BoundaryCrossings& crossings, const RayPlace* after = nullptr) const;
+
+  /// Whether a place on a shadow ray is the point that it ends at, and not another one of the same
+  /// primitive, which may lie in its own shadow.
+  /// @param end its distance from this origin
+  bool is_end(const Vec3f& origin, const Vec3f& direction, const RayPlace& place,
+              const ShadowEnd& end) const;
+
+  /// All surfaces on a ray in the order of their places, whatever they are made of, each once even
+  /// on the common edge of two triangles. Allocates: for the time of loading.
+  std::vector<BoundaryCrossing> all_crossings(const Vec3f& origin, const Vec3f& direction) const;
+
+  /// Where a ray starts that leaves a point of these surfaces, so that it does not meet the same
+  /// place again: off the surface along its normal, to the side of the direction, by a few
+  /// roundings of the position.
+  Vec3f offset_ray_origin(const SurfacePoint& point, const Vec3f& direction) const;
+
+  /// Whether any of these shapes, in any instance, may have a point in the box; false only if none
+  /// has. Looks at every triangle: for the time of loading.
+  /// @param shapes SurfaceShape::shape
+  /// @param box [world, not relative to the origin]
+  bool intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const;
+
+  /// Whether these shapes together enclose the point, whichever way their normals point: by the
+  /// parity of crossings, three rays voting. Of use for closed shapes alone.
+  bool is_inside(const Vec3f& point, std::span<const uint32_t> shapes) const;
+
+ private:
+  class Data;
+  std::unique_ptr<const Data> data_;
+};
+
+}  // namespace freepath

@@ -1,0 +1,103 @@
+#include "freepath/lights/environment.h"
+
+#include <array>
+#include <limits>
+#include <numeric>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+
+namespace {
+
+bool is_legal(const Spectrum& s) { return is_finite(s) && s.x >= 0 && s.y >= 0 && s.z >= 0; }
+
+}  // namespace
+
+ConstantEnvironment::ConstantEnvironment(const Spectrum& radiance) : radiance_(radiance) {
+  if (!is_legal(radiance)) {
+    fail("the radiance of the environment is {},{},{}; it must be finite and not negative",
+         radiance.x, radiance.y, radiance.z);
+  }
+}
+
+ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::string& name)
+    : width_(image.width), height_(image.height), up_(up) {
+  if (width_ < 1 || height_ < 1) fail("{}: the environment image is empty", name);
+  const std::array<int, 3> colour = colour_channels(image, name);
+  radiance_.reserve(image.pixel_count());
+  for (int row = 0; row < height_; ++row) {
+    for (int column = 0; column < width_; ++column) {
+      const float* values = image.pixel(column, row);
+      const Spectrum s(values[colour[0]], values[colour[1]], values[colour[2]]);
+      if (!is_legal(s)) {
+        fail("{}: pixel ({}, {}) is {},{},{}; light must be finite and not negative", name, column,
+             row, s.x, s.y, s.z);
+      }
+      radiance_.push_back(s);
+    }
+  }
+  std::vector<double> heights(height_ + 1);
+  for (int row = 0; row <= height_; ++row) {
+    heights[row] = std::cos(std::numbers::pi * row / height_);
+    row_heights_.push_back(static_cast<float>(heights[row]));
+  }
+  std::vector<double> importance(image.pixel_count());  // of a direction in each pixel
+  Imath::Color3<double> fluence(0.0);
+  for (int row = 0; row < height_; ++row) {
+    const double solid_angle = 2 * std::numbers::pi * (heights[row] - heights[row + 1]) / width_;
+    for (int column = 0; column < width_; ++column) {
+      const Spectrum mean = mean_over_texel(column, row);
+      for (int i = 0; i < kChannels; ++i) fluence[i] += mean[i] * solid_angle;
+      importance[texel(column, row)] = luminance(mean);
+    }
+  }
+  for (int i = 0; i < kChannels; ++i) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    fluence_[i] = static_cast<float>(std::min(fluence[i], kLargest));
+  }
+  const bool black =
+      std::all_of(importance.begin(), importance.end(), [](double value) { return value == 0; });
+  if (black) std::fill(importance.begin(), importance.end(), 1.0);
+  build_tables(importance, heights);
+}
+
+void ImageEnvironment::build_tables(const std::vector<double>& importance,
+                                    const std::vector<double>& heights) {
+  // Within a row all pixels have the same solid angle, so that it cancels there.
+  std::vector<double> row_power(height_);
+  columns_.reserve(importance.size());
+  for (int row = 0; row < height_; ++row) {
+    const std::span<const double> pixels(importance.data() + texel(0, row),
+                                         static_cast<std::size_t>(width_));
+    const double sum = std::accumulate(pixels.begin(), pixels.end(), 0.0);
+    row_power[row] = sum * 2 * std::numbers::pi * (heights[row] - heights[row + 1]) / width_;
+    if (sum > 0) {
+      const std::vector<AliasEntry> table = make_alias_table(pixels);
+      columns_.insert(columns_.end(), table.begin(), table.end());
+    } else {
+      columns_.insert(columns_.end(), width_, AliasEntry{1, 0});  // a row that is never chosen
+    }
+  }
+  rows_ = make_alias_table(row_power);
+  const double power = std::accumulate(row_power.begin(), row_power.end(), 0.0);
+  pdf_.reserve(importance.size());
+  for (const double value : importance) pdf_.push_back(static_cast<float>(value / power));
+}
+
+Spectrum ImageEnvironment::mean_over_texel(int column, int row) const {
+  // The integral of the two hat functions that meet in a pixel: 3/4 of its own, 1/8 of each
+  // neighbour's.
+  constexpr std::array<float, 3> kWeights{0.125F, 0.75F, 0.125F};
+  Spectrum mean(0.0F);
+  for (int dy = -1; dy <= 1; ++dy) {
+    const int y = std::clamp(row + dy, 0, height_ - 1);
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = (column + dx + width_) % width_;
+      mean += radiance_[texel(x, y)] * (kWeights[dx + 1] * kWeights[dy + 1]);
+    }
+  }
+  return mean;
+}
+
+}  // namespace freepath

@@ -1,0 +1,149 @@
+#pragma once
+/// @file Light from everywhere around: constant, or an image in latitude-longitude form.
+///
+/// Directions are unit vectors from the scene towards the light [world]: the direction of travel of
+/// a ray that escapes. All that is called per path is inline, pure and in single precision.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "freepath/base/distributions.h"
+#include "freepath/base/spectrum.h"
+#include "freepath/base/up_axis.h"
+#include "freepath/base/vector.h"
+#include "freepath/io/image.h"
+
+namespace freepath {
+
+/// What an escaping ray sees, and how likely light sampling would have chosen its direction.
+struct LightValue {
+  Spectrum radiance{0.0F};
+  float pdf = 0;  ///< [1/sr]
+};
+
+/// The same radiance from everywhere.
+class ConstantEnvironment {
+ public:
+  /// @throws Error for a radiance that is negative or not finite
+  explicit ConstantEnvironment(const Spectrum& radiance);
+
+  LightValue evaluate(const Vec3f&) const { return {radiance_, kUniformSpherePdf}; }
+  Vec3f sample(float u0, float u1) const { return sample_sphere(u0, u1); }
+  /// Integral of the radiance over all directions.
+  Spectrum fluence() const { return radiance_ * (4.0F * std::numbers::pi_v<float>); }
+
+ private:
+  Spectrum radiance_;
+};
+
+/// A point of a latitude-longitude image; both coordinates run from 0 to 1, (0, 0) is the upper
+/// left corner. The convention is OpenEXR's: with y up, the centre of the image is the direction
+/// +z, +x lies a quarter to the left of it, -x a quarter to the right, and the top row is the
+/// zenith. With z up the centre is -y (up_axis.h).
+struct LatLong {
+  float u, v;
+};
+
+inline LatLong lat_long(const Vec3f& direction, UpAxis up) {
+  const Vec3f d = to_y_up(direction, up);
+  constexpr float kInversePi = std::numbers::inv_pi_v<float>;
+  return {0.5F - fast_atan2(d.x, d.z) * (0.5F * kInversePi),
+          fast_atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y) * kInversePi};
+}
+
+/// The inverse of lat_long.
+/// @param u horizontal coordinate in [0, 1]
+/// @param height cosine of the angle from the zenith
+inline Vec3f lat_long_direction(float u, float height, UpAxis up) {
+  const float longitude = std::numbers::pi_v<float> * (1.0F - 2.0F * u);
+  const float reach = std::sqrt(std::max(0.0F, (1.0F - height) * (1.0F + height)));
+  return from_y_up({reach * std::sin(longitude), height, reach * std::cos(longitude)}, up);
+}
+
+/// An image of the whole sphere, read bilinearly and sampled by importance.
+///
+/// A direction is drawn by choosing a pixel and then a point of equal solid-angle density within
+/// it. A pixel's probability is the luminance of the bilinear interpolant, averaged over the pixel,
+/// times its solid angle; so the density is constant in a pixel, finite at the poles, and 0 only
+/// where the interpolant is black. An image that is black everywhere is sampled uniformly.
+class ImageEnvironment {
+ public:
+  /// @param image linear values with the channels R, G, B or Y; it spans the whole sphere
+  /// @param name what to call the image in messages
+  /// @throws Error that names the pixel, if a value is negative, infinite or NaN
+  ImageEnvironment(const Image& image, UpAxis up, const std::string& name);
+
+  LightValue evaluate(const Vec3f& direction) const {
+    const LatLong position = lat_long(direction, up_);
+    const float x = position.u * static_cast<float>(width_);
+    const float y = position.v * static_cast<float>(height_);
+    const int column = std::clamp(static_cast<int>(x), 0, width_ - 1);
+    const int row = std::clamp(static_cast<int>(y), 0, height_ - 1);
+    return {interpolate(x - 0.5F, y - 0.5F), pdf_[texel(column, row)]};
+  }
+
+  /// A direction whose density is what `evaluate` returns.
+  Vec3f sample(float u0, float u1) const {
+    const AliasChoice row = choose(rows_, u1);
+    const std::span<const AliasEntry> columns(
+        columns_.data() + texel(0, static_cast<int>(row.index)), static_cast<std::size_t>(width_));
+    const AliasChoice column = choose(columns, u0);
+    const float top = row_heights_[row.index];
+    const float bottom = row_heights_[row.index + 1];
+    const float u =
+        (static_cast<float>(column.index) + column.remainder) / static_cast<float>(width_);
+    return lat_long_direction(u, top + (bottom - top) * row.remainder, up_);
+  }
+
+  /// Integral of the radiance over all directions.
+  Spectrum fluence() const { return fluence_; }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  std::size_t texel(int column, int row) const {
+    return static_cast<std::size_t>(row) * width_ + column;
+  }
+
+  /// Bilinear interpolant at a point whose unit is the pixel, (0, 0) the centre of the first; it
+  /// wraps around horizontally and is continued by the last row at the poles.
+  Spectrum interpolate(float x, float y) const {
+    // Not below -1, so that truncating x + 1 rounds x down.
+    int column0 = static_cast<int>(x + 1.0F) - 1;
+    const int above = static_cast<int>(y + 1.0F) - 1;
+    const float fx = x - static_cast<float>(column0);
+    const float fy = y - static_cast<float>(above);
+    int column1 = column0 + 1;
+    if (column0 < 0) column0 += width_;
+    if (column1 >= width_) column1 -= width_;
+    const int row0 = std::clamp(above, 0, height_ - 1);
+    const int row1 = std::clamp(above + 1, 0, height_ - 1);
+    const Spectrum upper =
+        radiance_[texel(column0, row0)] * (1.0F - fx) + radiance_[texel(column1, row0)] * fx;
+    const Spectrum lower =
+        radiance_[texel(column0, row1)] * (1.0F - fx) + radiance_[texel(column1, row1)] * fx;
+    return upper * (1.0F - fy) + lower * fy;
+  }
+
+  /// Mean of the interpolant over a pixel.
+  Spectrum mean_over_texel(int column, int row) const;
+  /// Makes the tables and densities from the importance of each pixel (per solid angle).
+  void build_tables(const std::vector<double>& importance, const std::vector<double>& heights);
+
+  int width_, height_;
+  UpAxis up_;
+  std::vector<Spectrum> radiance_;
+  std::vector<float> pdf_;          // [1/sr], for each pixel
+  std::vector<float> row_heights_;  // cosine of the zenith angle at the rows' upper edges
+  std::vector<AliasEntry> rows_;
+  std::vector<AliasEntry> columns_;  // a table for each row
+  Spectrum fluence_{0.0F};
+};
+
+}  // namespace freepath

@@ -1,0 +1,221 @@
+#include "freepath/lights/infinite_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "freepath/lights/photometry.h"
+
+namespace freepath {
+namespace {
+
+/// Cells of a portal's grid along an axis, for an image.
+int portal_cells(int image_size) { return std::clamp(image_size, 64, 1024); }
+
+Vec3f colour_of(const Spectrum& s) { return {s.x, s.y, s.z}; }
+
+/// Illuminance of a surface whose normal is `up`, by the midpoint rule on the octahedral map.
+template <class Environment>
+double illuminance_of(const Environment& environment, const Vec3f& up, const Vec3d& weights,
+                      int image_size) {
+  // Some points for each pixel, even if there are few.
+  constexpr int kLeast = 512;
+  const int size = image_size * std::max(1, kLeast / image_size);
+  double sum = 0;
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const Vec3f d =
+          direction_from_octahedral({(static_cast<float>(column) + 0.5F) / static_cast<float>(size),
+                                     (static_cast<float>(row) + 0.5F) / static_cast<float>(size)});
+      const double cosine = d.dot(up);
+      if (cosine <= 0) continue;
+      sum += cosine * weights.dot(Vec3d(colour_of(environment.evaluate(d).radiance)));
+    }
+  }
+  return 4 * std::numbers::pi * sum / (static_cast<double>(size) * size);
+}
+
+Image without_negative(Image image) {
+  for (float& value : image.values) value = value < 0 ? 0 : value;
+  return image;
+}
+
+}  // namespace
+
+void InfiniteLights::add(const ConstantInfiniteLight& light, const Vec3d& origin,
+                         const SpectrumTable& table) {
+  const SpectralDistribution& spectrum = table.spectrum(light.radiance);
+  const double factor =
+      light_factor(spectrum, light.scale, light.illuminance, std::numbers::pi, light.name);
+  const double importance = 4 * std::numbers::pi * factor * brightness(spectrum);
+  if (importance <= 0) return;
+  Light result{Constant{light.radiance}, static_cast<float>(factor)};
+  if (light.portal) {
+    result.portal.emplace(
+        *light.portal, origin, [](const Vec3f&) { return 1.0; }, portal_cells(0), light.name);
+  }
+  result.importance = importance;
+  lights_.push_back(std::move(result));
+}
+
+void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin) {
+  const Vec3d weights = luminance_weights(rgb_color_space("srgb"));
+  const std::string name = light.name + ": " + light.image.name;
+  const LightFrame frame(light.light_to_world, light.name);
+  Radiance radiance;
+  double fluence = 0;
+  double illuminance = 0;
+  const int size = light.image.pixels.width;
+  if (light.mapping == SphereMapping::kOctahedral) {
+    OctahedralEnvironment image(light.image.pixels, Vec3f(weights), name);
+    fluence = image.fluence();
+    if (light.illuminance) illuminance = illuminance_of(image, {0, 0, 1}, weights, size);
+    radiance = std::move(image);
+  } else {
+    ImageEnvironment image(without_negative(std::move(light.image.pixels)), UpAxis::kY, name);
+    fluence = weights.dot(Vec3d(colour_of(image.fluence())));
+    if (light.illuminance) illuminance = illuminance_of(image, {0, 1, 0}, weights, size);
+    radiance = std::move(image);
+  }
+  const double factor = light_factor(light.scale, light.illuminance, illuminance, name);
+  if (!(fluence * factor > 0)) return;
+  Light result{std::move(radiance), static_cast<float>(factor), frame};
+  if (light.portal) {
+    const auto brightness = [&](const Vec3f& direction) {
+      const Vec3f d = frame.to_light(direction).normalized();
+      const auto* const octahedral = std::get_if<OctahedralEnvironment>(&result.radiance);
+      return weights.dot(Vec3d(colour_of(
+          octahedral ? octahedral->evaluate(d).radiance
+                     : std::get_if<ImageEnvironment>(&result.radiance)->evaluate(d).radiance)));
+    };
+    result.portal.emplace(*light.portal, origin, brightness, portal_cells(size), light.name);
+  }
+  result.importance = fluence * factor;
+  lights_.push_back(std::move(result));
+}
+
+void InfiniteLights::add(EnvironmentLight light) {
+  const double factor = light_factor(light.scale, {}, 0, light.name);
+  const double fluence =
+      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(colour_of(light.environment.fluence())));
+  if (!(fluence * factor > 0)) return;
+  Light result{std::move(light.environment), static_cast<float>(factor)};
+  result.importance = fluence * factor;
+  lights_.push_back(std::move(result));
+}
+
+void InfiniteLights::add(const SunLight& light) {
+  const double factor = light_factor(light.scale, {}, 0, light.name);
+  const double irradiance =
+      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(colour_of(light.sun.irradiance())));
+  if (!(irradiance * factor > 0)) return;
+  Light result{light.sun, static_cast<float>(factor)};
+  result.importance = irradiance * factor;
+  lights_.push_back(std::move(result));
+}
+
+void InfiniteLights::finish() {
+  // A light counts by the integral of its radiance over all directions; but a fainter one may count
+  // for more where the others are in shadow.
+  constexpr double kEvenPart = 0.2;
+  double sum = 0;
+  double drawn = 0;
+  for (const Light& light : lights_) {
+    if (!light.is_drawn()) continue;
+    sum += light.importance;
+    ++drawn;
+  }
+  is_drawn_ = drawn > 0;
+  for (Light& light : lights_) {
+    if (!light.is_drawn()) continue;
+    light.share = static_cast<float>((1 - kEvenPart) * light.importance / sum + kEvenPart / drawn);
+  }
+}
+
+LightSeen InfiniteLights::evaluate(const Light& light, const Vec3f& from, const Vec3f& direction,
+                                   const SpectrumValues& values) const {
+  float portal_pdf = 0;
+  if (light.portal) {
+    portal_pdf = light.portal->pdf(from, direction);
+    if (portal_pdf == 0) return {};
+  }
+  Vec3f towards = direction;
+  float solid_angle = 1;
+  if (light.frame) {
+    towards = light.frame->to_light(direction);
+    const float length = towards.length();
+    towards *= 1.0F / length;
+    solid_angle = light.frame->light_solid_angle(length);
+  }
+  LightSeen seen;
+  if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
+    seen = {values[constant->radiance] * light.scale, kUniformSpherePdf};
+  } else if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
+    if (sun->contains(towards)) {
+      seen = {values.illuminant(colour_of(sun->radiance())) * light.scale, sun->pdf()};
+    }
+  } else {
+    const auto* const octahedral = std::get_if<OctahedralEnvironment>(&light.radiance);
+    const LightValue value =
+        octahedral ? octahedral->evaluate(towards)
+                   : std::get_if<ImageEnvironment>(&light.radiance)->evaluate(towards);
+    seen = {values.illuminant(colour_of(value.radiance)) * light.scale, value.pdf * solid_angle};
+  }
+  if (light.portal) seen.pdf = portal_pdf;
+  return seen;
+}
+
+LightSeen InfiniteLights::evaluate(const Vec3f& from, const Vec3f& direction,
+                                   const SpectrumValues& values) const {
+  LightSeen all;
+  for (const Light& light : lights_) {
+    const LightSeen seen = evaluate(light, from, direction, values);
+    all.radiance += seen.radiance;
+    all.pdf += light.share * seen.pdf;
+  }
+  return all;
+}
+
+Vec3f InfiniteLights::sample_world(const Light& light, float u0, float u1) {
+  Vec3f direction;
+  if (const auto* const octahedral = std::get_if<OctahedralEnvironment>(&light.radiance)) {
+    direction = octahedral->sample(u0, u1);
+  } else if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
+    direction = image->sample(u0, u1);
+  } else if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
+    direction = sun->sample(u0, u1);
+  } else {
+    direction = sample_sphere(u0, u1);
+  }
+  if (!light.frame) return direction;
+  const Vec3f world = light.frame->to_world(direction);
+  return world * (1.0F / world.length());
+}
+
+LightDraw InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values, float u0,
+                                 float u1, float u2) const {
+  LightDraw draw;
+  const Light* chosen = nullptr;
+  for (const Light& light : lights_) {
+    if (light.share == 0) continue;
+    chosen = &light;
+    if (u2 < light.share) break;
+    u2 -= light.share;
+  }
+  if (chosen == nullptr) return draw;
+  const Light& light = *chosen;
+  if (light.portal) {
+    const std::optional<Vec3f> direction = light.portal->sample(from, u0, u1);
+    if (!direction) return draw;
+    draw.direction = *direction;
+  } else {
+    draw.direction = sample_world(light, u0, u1);
+  }
+  const LightSeen seen = evaluate(from, draw.direction, values);
+  draw.radiance = seen.radiance;
+  draw.pdf = seen.pdf;
+  return draw;
+}
+
+}  // namespace freepath

@@ -1,0 +1,72 @@
+#pragma once
+/// @file All light from outside of the scene.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "freepath/base/channels.h"
+#include "freepath/lights/environment.h"
+#include "freepath/lights/light_descriptions.h"
+#include "freepath/lights/light_draw.h"
+#include "freepath/lights/light_frame.h"
+#include "freepath/lights/octahedral_environment.h"
+#include "freepath/lights/portal.h"
+#include "freepath/lights/sun.h"
+#include "freepath/spectra/spectrum_table.h"
+
+namespace freepath {
+
+/// The lights from outside of the scene as one, but those of a single direction: their radiances
+/// add up, and the density of a direction is that of the mixture of them all. Hence a single
+/// evaluation is needed for multiple importance sampling. Immutable; threads share it freely.
+///
+/// A light that is the same from everywhere is never drawn: a path that escapes finds it by itself,
+/// and no draw could choose better than a phase function or a material does. A portal changes that.
+class InfiniteLights {
+ public:
+  /// Lights of each kind; those that are black are left out.
+  void add(const ConstantInfiniteLight& light, const Vec3d& origin, const SpectrumTable& table);
+  void add(ImageInfiniteLight light, const Vec3d& origin);
+  void add(EnvironmentLight light);
+  void add(const SunLight& light);
+  /// To be called after the last light.
+  void finish();
+
+  /// Whether there is something to draw.
+  bool is_drawn() const { return is_drawn_; }
+
+  /// What a ray sees that escapes, and the density of `sample` there: 0 of what is not drawn.
+  LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
+  /// A draw of all lights together. Of density 0 if there is nothing to draw.
+  LightDraw sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
+                   float u2) const;
+
+ private:
+  /// What shines the same from everywhere.
+  struct Constant {
+    SpectrumId radiance;
+  };
+  using Radiance = std::variant<Constant, OctahedralEnvironment, ImageEnvironment, Sun>;
+  struct Light {
+    Radiance radiance;
+    float scale = 1;
+    std::optional<LightFrame> frame = {};  // none where it is that of the world
+    std::optional<Portal> portal = {};
+    double importance = 0;
+    float share = 0;  // probability of drawing it
+
+    bool is_drawn() const { return true || !std::holds_alternative<Constant>(radiance); }
+  };
+
+  LightSeen evaluate(const Light& light, const Vec3f& from, const Vec3f& direction,
+                     const SpectrumValues& values) const;
+  static Vec3f sample_world(const Light& light, float u0, float u1);
+
+  std::vector<Light> lights_;
+  bool is_drawn_ = false;
+};
+
+}  // namespace freepath

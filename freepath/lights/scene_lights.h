@@ -1,0 +1,106 @@
+#pragma once
+/// @file All lights of a scene, as its paths see them.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "freepath/base/channels.h"
+#include "freepath/base/vector.h"
+#include "freepath/geometry/surface_point.h"
+#include "freepath/lights/infinite_lights.h"
+#include "freepath/lights/light_chooser.h"
+#include "freepath/lights/light_descriptions.h"
+#include "freepath/lights/light_draw.h"
+#include "freepath/lights/punctual_light.h"
+#include "freepath/spectra/spectrum_table.h"
+
+namespace freepath {
+
+/// The lights of a scene: drawn for a point by `sample`, found by rays with `escape` and `hit`,
+/// whose densities are those of `sample`. Directions are unit vectors; positions are relative to
+/// the origin of the rays. Immutable; threads share it freely, and nothing that is called per path
+/// throws, locks or allocates.
+///
+/// A draw chooses evenly among the kinds of light to draw: all from outside of the scene but
+/// parallel light, parallel light, and lights within. How much of each arrives depends on what
+/// shadows it, so that no share by power would be safe. Among parallel lights it chooses by
+/// illuminance, among those within as LightChooser does.
+class SceneLights {
+ public:
+  /// @param table holds the spectra of the descriptions
+  /// @throws Error that names the light, for what cannot be one
+  SceneLights(SceneLightsDescription description, const SpectrumTable& table);
+
+  /// A direction from which light arrives at a position, were nothing in between. u2 chooses the
+  /// light, u0 and u1 the direction; all in [0, 1).
+  LightDraw sample(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
+                   float u2) const;
+
+  /// What a ray sees that leaves the scene.
+  LightSeen escape(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const {
+    LightSeen seen = infinite_.evaluate(from, direction, values);
+    seen.pdf *= infinite_share_;
+    return seen;
+  }
+
+  /// What a ray from `from` sees of an area light that it hits.
+  /// @param light of SceneLightsDescription::area_lights
+  LightSeen hit(const Vec3f& from, uint32_t light, const SurfacePoint& point,
+                const SpectrumValues& values) const;
+
+  /// The radiance alone, for rays whose hits are not weighted.
+  Channels emitted(uint32_t light, const SurfacePoint& point, const Vec3f& towards,
+                   const SpectrumValues& values) const;
+
+  /// Whether there is a light to draw.
+  bool is_drawn() const { return infinite_.is_drawn() || !distant_.empty() || !chooser_.is_dark(); }
+
+ private:
+  struct Distant {
+    Vec3f towards;
+    SpectrumId radiance;
+    float scale;
+    float share;  // probability among parallel lights
+  };
+  struct Emission {
+    SpectrumId radiance;
+    bool two_sided = false;
+    int width = 0, height = 0;
+    std::vector<Vec3f> colours;  // of an image, in place of the spectrum
+  };
+  struct Area {
+    std::shared_ptr<const EmitterGeometry> geometry;
+    uint32_t emission;
+    uint32_t first_part;  // of parts_
+    bool reversed, invisible;
+  };
+  /// A light of its own.
+  struct Part {
+    uint32_t area;
+    float scale;
+  };
+
+  void add(const DistantLight& light, const SpectrumTable& table);
+  std::vector<LightBounds> add_area_lights(const SceneLightsDescription& description,
+                                           const SpectrumTable& table);
+  void set_shares();
+  static Emission make_emission(const AreaEmission& description);
+
+  Channels radiance(const Part& part, const Vec3f& normal, float u, float v, const Vec3f& towards,
+                    const SpectrumValues& values) const;
+  LightDraw sample_distant(const SpectrumValues& values, float u) const;
+  LightDraw sample_within(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
+                          float u2) const;
+
+  InfiniteLights infinite_;
+  std::vector<Distant> distant_;
+  std::vector<PunctualLight> punctual_;
+  std::vector<Emission> emissions_;
+  std::vector<Area> areas_;
+  std::vector<Part> parts_;
+  LightChooser chooser_;  // of punctual lights, then parts
+  float infinite_share_ = 0, distant_share_ = 0, within_share_ = 0;
+};
+
+}  // namespace freepath

@@ -1,0 +1,34 @@
+#pragma once
+/// @file From the parameters of a material to what they are at a point.
+
+#include "freepath/base/channels.h"
+#include "freepath/materials/conductor_lobe.h"
+#include "freepath/materials/material_kinds.h"
+#include "freepath/materials/trowbridge_reitz.h"
+
+namespace freepath {
+
+TrowbridgeReitz facets_at(const Roughness& roughness, const SurfacePoint& point,
+                          const SurfaceContext& context);
+
+/// In [0, 1], as pbrt-v4 clips it.
+Channels reflectance_at(const SpectrumInput& reflectance, const SurfacePoint& point,
+                        const SurfaceContext& context);
+
+/// @param outside refractive index of what lies on the conductor
+ConductorLobe conductor_at(const ConductorIndex& index, const Roughness& roughness, float outside,
+                           const SurfacePoint& point, const SurfaceContext& context);
+
+/// A refractive index in the channels of a path.
+struct DielectricIndex {
+  Channels eta;
+  float hero = 1;      ///< That of the hero's channel.
+  bool parts = false;  ///< Whether channels that are in use differ.
+};
+/// An index of 0, as a sampled spectrum has beyond its ends, counts as 1.
+DielectricIndex dielectric_index(SpectrumId eta, const SurfaceContext& context);
+
+/// A value in the hero's channel alone, which stands for all of them.
+Channels hero_alone(float value, const SurfaceContext& context);
+
+}  // namespace freepath

@@ -1,0 +1,69 @@
+#pragma once
+/// @file The media around the rays of a thread, by number.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "freepath/paths/media_set.h"
+#include "freepath/paths/path_colors.h"
+#include "freepath/paths/path_scene.h"
+
+namespace freepath {
+
+/// A set of media that MediaPlaces knows.
+using PlaceId = uint32_t;
+
+/// Numbers the sets of media that rays come to, and remembers what crossing a boundary makes of
+/// them, so that a path carries a number and not a set. One for each thread.
+class MediaPlaces {
+ public:
+  /// @param scene,factory must outlive this
+  MediaPlaces(const PathScene& scene, const ColorFactory& factory)
+      : scene_(scene), factory_(factory) {}
+
+  PlaceId of(const MediaSet& media) {
+    const auto [known, is_new] = numbers_.try_emplace(media, static_cast<PlaceId>(sets_.size()));
+    if (is_new) {
+      sets_.push_back(media);
+      media_.push_back(factory_.medium_of(media));
+    }
+    return known->second;
+  }
+
+  /// What these media are together: ColorFactory::medium_of.
+  MediumId medium(PlaceId place) const { return media_[place]; }
+
+  /// The media beyond the boundary of a shape.
+  /// @throws Error where there are more media at once than a set holds
+  PlaceId cross(PlaceId place, uint32_t shape, bool enters) {
+    const PathShape& boundary = scene_.shapes[shape];
+    if (boundary.inside == boundary.outside) return place;
+    Crossing& last = crossings_[(place * 31 + shape * 2 + (enters ? 1 : 0)) % kRemembered];
+    if (last.from != place || last.shape != shape) {  // its place in the table tells the side
+      MediaSet media = sets_[place];
+      boundary.cross(media, enters);
+      last = {place, shape, of(media)};
+    }
+    return last.to;
+  }
+
+ private:
+  const PathScene& scene_;
+  const ColorFactory& factory_;
+  std::vector<MediaSet> sets_;
+  std::vector<MediumId> media_;
+  std::map<MediaSet, PlaceId> numbers_;
+  /// Crossings that came last to the places of a table.
+  struct Crossing {
+    PlaceId from = ~PlaceId{0};
+    uint32_t shape = 0;
+    PlaceId to = 0;
+  };
+  static constexpr uint32_t kRemembered = 256;
+  std::array<Crossing, kRemembered> crossings_;
+};
+
+}  // namespace freepath

@@ -1,0 +1,67 @@
+#include "freepath/paths/open_jobs.h"
+
+#include <algorithm>
+
+namespace freepath {
+namespace {
+
+/// Results that may wait for the last paths of their jobs, unless two jobs have more.
+constexpr std::size_t kMostWaiting = std::size_t{1} << 18;
+constexpr uint32_t kFewestOpenJobs = 2;
+
+}  // namespace
+
+void OpenJobs::begin(const Film& film, std::size_t paths_per_sample) {
+  paths_per_sample_ = paths_per_sample;
+  open_count_ = 0;
+  waiting_ = 0;
+  jobs_.clear();
+  results.clear();
+  spectra.clear();
+  layers.begin(film, 0);
+}
+
+bool OpenJobs::has_room() const { return open_count_ < kFewestOpenJobs || waiting_ < kMostWaiting; }
+
+std::size_t OpenJobs::place_of(std::size_t paths) const {
+  const auto is_free = [&](std::size_t first) {
+    return std::none_of(jobs_.begin(), jobs_.end(), [&](const Job& job) {
+      return job.is_open && first < job.first + job.paths && job.first < first + paths;
+    });
+  };
+  std::size_t lowest = 0;
+  if (is_free(lowest)) return lowest;
+  lowest = results.size();
+  for (const Job& job : jobs_) {
+    const std::size_t behind = job.first + job.paths;
+    if (job.is_open && behind < lowest && is_free(behind)) lowest = behind;
+  }
+  return lowest;
+}
+
+uint32_t OpenJobs::open(const PathJob& job, const Film& film) {
+  const std::size_t paths = job.sample_count() * paths_per_sample_;
+  const std::size_t first = place_of(paths);
+  const std::size_t end = first + paths;
+  if (results.size() < end) results.resize(end);
+  std::fill(results.begin() + static_cast<std::ptrdiff_t>(first),
+            results.begin() + static_cast<std::ptrdiff_t>(end), PathSample{});
+  layers.renew(first, paths, film);
+  if (film.buckets().count > 0) spectra.resize(std::max(spectra.size(), end));
+  uint32_t number = 0;
+  while (number < jobs_.size() && jobs_[number].is_open) ++number;
+  if (number == jobs_.size()) jobs_.emplace_back();
+  jobs_[number] = {job, first, paths, paths, true, {}};
+  jobs_[number].counts.paths = paths;
+  ++open_count_;
+  waiting_ += paths;
+  return number;
+}
+
+void OpenJobs::close(uint32_t number) {
+  jobs_[number].is_open = false;
+  --open_count_;
+  waiting_ -= jobs_[number].paths;
+}
+
+}  // namespace freepath

@@ -1,0 +1,59 @@
+#pragma once
+/// @file The jobs that a wavefront has under way.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "freepath/base/channels.h"
+#include "freepath/paths/layer_recorder.h"
+#include "freepath/paths/path_wavefront.h"
+#include "freepath/sensors/film.h"
+
+namespace freepath {
+
+/// Jobs whose paths are in flight together, and what these have found so far. The next job may
+/// begin while the last paths of those before are still on their way: only so are lanes full where
+/// few paths scatter a thousand times.
+class OpenJobs {
+ public:
+  /// Forgets all jobs.
+  /// @param paths_per_sample of all that come
+  void begin(const Film& film, std::size_t paths_per_sample);
+
+  /// Whether another job may begin beside those that are open: what waits takes memory.
+  bool has_room() const;
+  /// Begins a job.
+  /// @return its number, to be used until it is closed
+  uint32_t open(const PathJob& job, const Film& film);
+  /// Forgets a job.
+  void close(uint32_t number);
+  bool is_empty() const { return open_count_ == 0; }
+
+  struct Job {
+    PathJob job;
+    std::size_t first = 0;  ///< Place of its first path's result.
+    std::size_t paths = 0;
+    std::size_t paths_left = 0;  ///< Those that have not ended.
+    bool is_open = false;
+    PathWavefront::Counts counts;  ///< But for walks.
+  };
+  Job& operator[](uint32_t number) { return jobs_[number]; }
+  const Job& operator[](uint32_t number) const { return jobs_[number]; }
+
+  std::vector<PathSample> results;
+  std::vector<Channels> spectra;  ///< Of the same paths, if the film records them.
+  LayerRecorder layers;           ///< Of the results.
+
+ private:
+  /// The lowest place where so many results lie beside those of open jobs.
+  std::size_t place_of(std::size_t paths) const;
+
+  std::size_t paths_per_sample_ = 1;
+  uint32_t open_count_ = 0;
+  std::size_t waiting_ = 0;  // results of open jobs
+  std::vector<Job> jobs_;
+};
+
+}  // namespace freepath

@@ -1,0 +1,59 @@
+#pragma once
+/// @file A path in flight.
+
+#include <cstdint>
+#include <optional>
+
+#include "freepath/base/channels.h"
+#include "freepath/base/vector.h"
+#include "freepath/geometry/surfaces.h"
+#include "freepath/paths/media_places.h"
+#include "freepath/paths/path_colors.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/sensors/film.h"
+
+namespace freepath {
+
+/// A path, and the ray that it flies on.
+struct ScenePath {
+  Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
+  Vec3f direction{0};  ///< Of its ray, unit [world].
+  /// Where the ray ends at a surface, once that is known.
+  std::optional<SurfaceHit> hit;
+  bool surfaces_known = false;
+  PlaceId place = 0;          ///< Which media are around: MediaPlaces.
+  MediumId medium = kVacuum;  ///< What they are together.
+
+  const PathColors* colors = nullptr;
+  Channels throughput;
+  Channels density{1.0F};  ///< FlightStream::density of the flights so far.
+  Channels radiance;
+  /// The part of the radiance that is known in R, G, B: what a throughput without colour brings of
+  /// lights, whose integral over all wavelengths is known.
+  Channels rgb;
+
+  /// Where the direction began: at the camera, a surface or a collision. Unlike `origin` it stays
+  /// where it is when the ray crosses a boundary.
+  Vec3f turned_at{0};
+  float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
+  /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
+  float emission_share = 1;
+  int hero = 0;  ///< The channel that decides where channels part.
+  bool only_hero = false;
+  bool is_coloured = false;  ///< It has met something that may tell wavelengths apart.
+  bool is_dead = false;
+
+  uint32_t pixel = 0;
+  uint32_t sample_key = 0;  ///< Of its random numbers.
+  uint32_t flights = 0;     ///< Rays so far.
+  uint32_t turned_in = 0;   ///< The flight with which its direction began.
+  uint32_t scatterings = 0;
+  uint32_t job = 0;     ///< Of OpenJobs.
+  uint32_t result = 0;  ///< Place of what it finds in OpenJobs::results.
+  int channel = -1;     ///< The one channel that it carries, or -1.
+  uint64_t lookups = 0;
+  float distance = 0;  ///< Flown from the camera, until the first event [world].
+  PathSample sample;   ///< What else the film records of it.
+};
+
+}  // namespace freepath

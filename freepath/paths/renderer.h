@@ -1,0 +1,97 @@
+#pragma once
+/// @file The renderer: samples of all pixels on all threads, in passes.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "freepath/paths/path_wavefront.h"
+
+namespace freepath {
+
+/// How much to render, and with what.
+struct RenderSettings {
+  uint32_t samples = 64;  ///< Of each pixel; 0: as many as the time allows.
+  /// [s] 0: none. Passes are planned to end in time. One that doesn't is broken off: a first pass,
+  /// after which each pixel has one sample, where it would take more than twice the limit and a
+  /// second, later ones a few percent past the limit.
+  double time_limit = 0;
+  /// Never breaks a pass off for want of time: all pixels have as many samples, two at least, so
+  /// that their variance is known. The time is that of the pass which ends next to it.
+  bool whole_passes = false;
+  int wavelengths = 4;  ///< Of a path, where they are rendered: 1 to kMaxChannels.
+  int threads = 0;      ///< 0: as many as the machine has.
+  uint32_t max_scatterings = UINT32_MAX;
+  /// Renders although the weights of paths are not bounded (WeightGrowth): to study methods, not
+  /// for pictures.
+  bool studies_unbounded_weights = false;
+  /// What the film records; path layers cost time, and all cost memory.
+  LayerSet layers = LayerSet::standard();
+  /// Channels of spectral radiance, in the light's own units (docs/scenes.md); recorded only where
+  /// wavelengths are rendered.
+  WavelengthBuckets buckets = {};
+  /// Renders a part alone, whose pixels are those of the whole picture.
+  std::optional<Crop> crop = {};
+  /// Tells the time [s] since any moment, and is asked from any thread; empty: the system's steady
+  /// clock. A test can count time by it, whatever the machine does.
+  std::function<double()> clock = {};
+  /// Called between passes, by the thread that renders, with what there is.
+  std::function<void(const Film&)> on_pass = {};
+  std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
+  WalkSettings walk;         ///< Its origin is chosen by the renderer: the middle of the medium.
+};
+
+/// What is done so far.
+struct RenderProgress {
+  double samples_done = 0;   ///< Of each pixel, on average.
+  double samples_total = 0;  ///< 0: as many as the time allows.
+  double seconds = 0;
+};
+
+/// A picture and how it came about.
+struct RenderResult {
+  Film film;
+  WalkStatistics free_paths;   ///< What the tracker did.
+  WalkStatistics shadow_rays;  ///< What the transmittance estimator did.
+  uint64_t paths = 0;
+  /// Of the pixel with the fewest, and with the most: the same, unless a pass was broken off.
+  uint32_t samples = 0, most_samples = 0;
+  std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
+  /// Paths whose weight left the range of float: their pixels have an infinite variance.
+  uint64_t overflows = 0;
+  /// Paths that the limit of scatterings ended.
+  uint64_t cut_paths = 0;
+  /// The weight that they still had, over the number of all paths: the share of light that is
+  /// missing where as much comes from everywhere.
+  double cut_share = 0;
+  double seconds = 0;
+  bool interrupted = false;
+
+  /// Of both.
+  WalkStatistics statistics() const {
+    WalkStatistics sum = free_paths;
+    sum.merge(shadow_rays);
+    return sum;
+  }
+};
+
+/// Called now and then, by one thread at a time. False ends the rendering soon: a first pass if it
+/// isn't complete within a second, others at once.
+using ProgressFunction = std::function<bool(const RenderProgress&)>;
+
+/// Renders a medium lit from outside and from within, without a limit to the number of scatterings.
+/// The picture depends on medium, camera, lights, walk settings and sample count alone.
+///
+/// A medium whose extinction is grey is traced with one path for all channels, else with one path
+/// for each channel of every sample.
+///
+/// Where a pass is broken off, jobs that are not finished are dropped whole, so that a sample is
+/// the same as in any other picture. How many samples a pixel has then depends on the time that
+/// its paths took; dropping those unfinished, rather than waiting for them, keeps the bias of the
+/// mean small [Glynn90]. A pixel without samples has no mean.
+/// @throws Error for methods that do not exist or whose weights would grow at every scattering
+///   (weight_growth.h), and (an internal error) if a sample is not finite
+RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
+                    const RenderSettings& settings, const ProgressFunction& progress = {});
+
+}  // namespace freepath

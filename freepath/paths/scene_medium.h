@@ -1,0 +1,106 @@
+#pragma once
+/// @file A medium of a scene: spectra of its components, from which its cross sections in the
+/// channels of paths are made.
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "freepath/base/vector.h"
+#include "freepath/lights/thermal_radiance.h"
+#include "freepath/media/field.h"
+#include "freepath/media/medium.h"
+#include "freepath/media/medium_channels.h"
+#include "freepath/media/phase/phase_function.h"
+#include "freepath/spectra/rgb_spectrum.h"
+#include "freepath/spectra/spectrum_table.h"
+
+namespace freepath {
+
+/// One density and what it does to light.
+struct SceneMediumComponent {
+  SpectrumId sigma_a, sigma_s;  ///< [1/m per density], times scale.
+  float scale = 1;
+  /// Emitted radiance, times radiance_scale and, if set, the value of radiance_field.
+  SpectrumId radiance;
+  float radiance_scale = 1;
+  std::shared_ptr<const Field> radiance_field;
+  std::optional<TemperatureEmission> temperature;  ///< In place of radiance.
+  PhaseFunction phase = {};
+};
+
+/// Voxels whose coefficients are colours, each of which becomes a spectrum: pbrt's "rgbgrid". One
+/// layout of voxels for all three; any of them may be missing.
+struct ColorVoxels {
+  Vec3i counts{0};
+  Matrix4d index_to_world;
+  std::vector<RgbSpectrum> sigma_a, sigma_s;  ///< x fastest [1/m].
+  std::vector<RgbSpectrum> radiance;          ///< Illuminants.
+  float scale = 1;                            ///< Of both coefficients.
+  float radiance_scale = 1;
+  PhaseFunction phase = {};
+};
+
+/// A medium, and its cross sections in the channels of some paths.
+struct BoundMedium {
+  std::shared_ptr<const Medium> medium;
+  MediumChannels channels;
+};
+
+/// One medium of a scene. Immutable once made; threads share it.
+class SceneMedium {
+ public:
+  /// @param medium whose components are those, in their order; its own cross sections bound what
+  ///   the spectra can be, and decide the size of super-voxels alone
+  SceneMedium(std::string name, std::shared_ptr<const Medium> medium,
+              std::vector<SceneMediumComponent> components);
+  /// The same everywhere in a box, and nowhere else.
+  /// @param unit_to_world puts the unit cube where the medium is
+  /// @param largest_sigma_t bounds what the spectra can be [1/m]
+  static SceneMedium homogeneous(std::string name, SceneMediumComponent component,
+                                 const Matrix4d& unit_to_world, float largest_sigma_t);
+  /// @throws Error if sizes do not fit the counts
+  SceneMedium(std::string name, std::shared_ptr<const ColorVoxels> voxels);
+
+  /// Its cross sections in the channels of these spectra.
+  BoundMedium bind(const SpectrumValues& spectra) const;
+
+  /// Whether its cross sections are the same at all wavelengths.
+  bool is_grey(const SpectrumTable& table) const;
+  /// Whether its emission is, too.
+  bool is_constant(const SpectrumTable& table) const;
+
+  const std::string& name() const { return name_; }
+  /// Of a component as events number them.
+  const PhaseFunction& phase(std::size_t component) const {
+    return phases_[std::min(component, phases_.size() - 1)];
+  }
+  /// Scattering over extinction of a component, for pictures of it.
+  Channels albedo(std::size_t component, const SpectrumValues& spectra) const;
+  /// Memory that `bind` takes for so many wavelengths, beside what all of them share.
+  std::size_t bytes_of_set(int wavelengths) const;
+  /// What it fills [world].
+  const Box3d& bounds() const { return bounds_; }
+  /// Null where voxels depend on wavelengths.
+  const std::shared_ptr<const Medium>& medium() const { return medium_; }
+  const std::vector<SceneMediumComponent>& components() const { return components_; }
+  /// Whether it is the same everywhere in its bounds.
+  bool is_homogeneous() const { return is_homogeneous_; }
+  /// The same in another box; only of a homogeneous one.
+  SceneMedium in_box(const Matrix4d& unit_to_world) const;
+
+ private:
+  BoundMedium bind_colors(const SpectrumValues& spectra) const;
+
+  std::string name_;
+  std::shared_ptr<const Medium> medium_;
+  std::vector<SceneMediumComponent> components_;
+  std::shared_ptr<const ColorVoxels> colors_;
+  std::vector<PhaseFunction> phases_;
+  Box3d bounds_;
+  bool is_homogeneous_ = false;
+};
+
+}  // namespace freepath

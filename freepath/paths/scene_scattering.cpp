@@ -1,0 +1,336 @@
+// What happens to the paths of a SceneWavefront at surfaces and collisions.
+
+#include "freepath/paths/scene_wavefront.h"
+
+#include "freepath/paths/alpha_chance.h"
+
+namespace freepath {
+
+bool SceneWavefront::sees_rgb(const ScenePath& path) const {
+  const bool needs_spectrum = records_spectra_;
+  if (!setup_.factory->sees_rgb() || path.is_coloured || needs_spectrum) return false;
+  const Channels& c = path.throughput;
+  for (int i = 1; i < path.colors->spectra.channels(); ++i) {
+    if (c[i] != c[0]) return false;
+  }
+  return true;
+}
+
+Channels SceneWavefront::light_throughput(const ScenePath& path, bool in_rgb) {
+  return in_rgb ? Channels(path.throughput[0]) : path.throughput;
+}
+
+const SpectrumValues& SceneWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
+  return in_rgb ? setup_.factory->rgb() : path.colors->spectra;
+}
+
+void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
+  path.origin = origin;
+  path.direction = direction;
+  path.hit.reset();
+  path.surfaces_known = false;
+  path.emission_share = 1;
+  ++path.flights;
+}
+
+int SceneWavefront::rank(uint32_t shape) const {
+  const PathShape& sides = scene_.shapes[shape];
+  if (sides.light) return 3;
+  if (!sides.material) return 0;
+  return scene_.materials[*sides.material].transmits() ? 1 : 2;
+}
+
+void SceneWavefront::turn(ScenePath& path, const Vec3f& from, const Vec3f& origin,
+                          const Vec3f& direction) const {
+  path.turned_at = from;
+  go_on(path, origin, direction);
+  path.turned_in = path.flights;
+}
+
+std::optional<SurfaceHit> SceneWavefront::first_there(const ScenePath& path) {
+  const Surfaces& surfaces = *scene_.surfaces;
+  const AlphaChance chance{setup_.seed, path.pixel, path.sample_key,
+                           stream_number(StreamPurpose::kWalk, path.turned_in)};
+  const auto is_there = [&](const SurfaceHit& hit) {
+    return chance.meets(hit.place.key, scene_.alpha_at(hit.point));
+  };
+  const auto is_missing = [&](const TiedSurface& tied) {
+    return scene_.shapes[tied.shape].alpha &&
+           !is_there(surfaces.describe(path.origin, path.direction, tied));
+  };
+  SurfaceHit hit = *path.hit;
+  while (true) {
+    ties_.clear();
+    if (hit.is_tied) surfaces.find_ties(path.origin, path.direction, hit, ties_);
+    std::erase_if(ties_, is_missing);
+    if (is_there(hit)) return hit;
+    if (ties_.empty()) return std::nullopt;
+    hit = surfaces.describe(path.origin, path.direction, ties_.front());
+  }
+}
+
+std::optional<SurfaceHit> SceneWavefront::choose_surface(const ScenePath& path) {
+  const Surfaces& surfaces = *scene_.surfaces;
+  SurfaceHit hit = *path.hit;
+  if (has_alpha_) {
+    const std::optional<SurfaceHit> there = first_there(path);
+    if (!there) return std::nullopt;
+    hit = *there;
+  } else {
+    ties_.clear();
+    if (hit.is_tied) surfaces.find_ties(path.origin, path.direction, hit, ties_);
+  }
+  if (ties_.empty()) return hit;
+  Vec3f beyond = surfaces.offset_ray_origin(hit.point, path.direction);
+  const auto take = [&](TiedSurface& tied) {
+    const TiedSurface before{hit.place, hit.point.shape, !hit.from_inside};
+    hit = surfaces.describe(path.origin, path.direction, tied);
+    tied = before;
+  };
+  // All boundaries at the place are crossed at once: nothing lies between them.
+  if (rank(hit.point.shape) == 0) {
+    for (TiedSurface& tied : ties_) {
+      if (rank(tied.shape) > 0 || surfaces.is_beyond(tied.place, beyond, path.direction)) continue;
+      take(tied);
+      beyond = surfaces.offset_ray_origin(hit.point, path.direction);
+    }
+  }
+  // What a ray from beyond would meet may wait.
+  TiedSurface* chosen = nullptr;
+  int highest = rank(hit.point.shape);
+  for (TiedSurface& tied : ties_) {
+    const int other = rank(tied.shape);
+    if (other <= highest || !surfaces.is_beyond(tied.place, beyond, path.direction)) continue;
+    highest = other;
+    chosen = &tied;
+  }
+  if (chosen != nullptr) take(*chosen);
+  return hit;
+}
+
+SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const SurfaceHit& hit,
+                                                 const Vec3f& direction) {
+  Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.place};
+  const auto cross = [&](uint32_t shape, bool enters) {
+    departure.place = places_.cross(departure.place, shape, enters);
+  };
+  const bool goes_through = (direction.dot(hit.point.normal) > 0) == hit.from_inside;
+  if (goes_through) cross(hit.point.shape, !hit.from_inside);
+  for (const TiedSurface& tied : ties_) {
+    if (scene_.surfaces->is_beyond(tied.place, departure.origin, path.direction)) {
+      cross(tied.shape, tied.enters);
+    }
+  }
+  return departure;
+}
+
+LightDraw SceneWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                                     RandomStream& random) const {
+  const float u0 = random.uniform();
+  const float u1 = random.uniform();
+  const float u2 = random.uniform();
+  LightDraw light = scene_.lights->sample(position, spectra, u0, u1, u2);
+  if (!has_alpha_ || !light.area || light.area->light >= shapes_of_lights_.size()) return light;
+  // Paths meet the light with this chance, so that its mean is the same.
+  if (const std::optional<uint32_t> shape = shapes_of_lights_[light.area->light]) {
+    const LightDraw::Area& area = *light.area;
+    light.radiance *= scene_.alpha_at({.position = position + light.direction * light.distance,
+                                       .normal = area.normal,
+                                       .shading_normal = area.normal,
+                                       .dpdu = Vec3f(0),
+                                       .u = area.u,
+                                       .v = area.v,
+                                       .shape = *shape,
+                                       .primitive = area.primitive});
+  }
+  return light;
+}
+
+void SceneWavefront::pass_hole(ScenePath& path) {
+  if (path.scatterings == 0) path.distance += path.hit->t;
+  go_on(path, scene_.surfaces->offset_ray_origin(path.hit->point, path.direction), path.direction);
+}
+
+void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
+  const Departure departure = depart(path, hit, path.direction);
+  set_place(path, departure.place);
+  if (path.scatterings == 0) path.distance += hit.t;
+  go_on(path, departure.origin, path.direction);
+}
+
+bool SceneWavefront::is_hole(const ScenePath& path, const SurfaceHit& hit,
+                             const Material& material) const {
+  if (!material.has_holes()) return false;
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  return material.is_hole(hit.point, path.direction, context);
+}
+
+void SceneWavefront::meet_surface(std::size_t slot) {
+  ScenePath& path = paths_[slot];
+  const std::optional<SurfaceHit> met = choose_surface(path);
+  if (!met) {
+    pass_hole(path);
+    return;
+  }
+  const SurfaceHit& hit = *met;
+  const PathShape& shape = scene_.shapes[hit.point.shape];
+  if (shape.light) {
+    const bool in_rgb = sees_rgb(path);
+    const SpectrumValues& spectra = light_spectra(path, in_rgb);
+    const LightSeen light =
+        path.pdf > 0
+            ? scene_.lights->hit(path.turned_at, *shape.light, hit.point, spectra)
+            : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction, spectra),
+                        0};
+    const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
+    (in_rgb ? path.rgb : path.radiance) += light_throughput(path, in_rgb) * light.radiance * share;
+  }
+  if (!shape.material || is_hole(path, hit, scene_.materials[*shape.material])) {
+    cross_boundary(path, hit);
+    return;
+  }
+  scatter_at_surface(slot, hit);
+}
+
+void SceneWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
+  const int channels = path.colors->spectra.channels();
+  float sum = 0;
+  for (int c = 0; c < channels; ++c) sum += path.throughput[c] * albedo[c];
+  jobs_[path.job].counts.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
+}
+
+bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
+  const float throughput = largest_magnitude(path.throughput);
+  if (throughput == 0) return false;
+  if (throughput >= setup_.roulette_threshold) return true;
+  const float survival = throughput / setup_.roulette_threshold;
+  if (random.uniform() >= survival) return false;
+  path.throughput *= 1.0F / survival;
+  return true;
+}
+
+void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) {
+  ScenePath& path = paths_[slot];
+  const PathShape& shape = scene_.shapes[hit.point.shape];
+  const Material& material = scene_.materials[*shape.material];
+  if (jobs_.layers.on()) {
+    jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
+  }
+  if (path.scatterings++ == 0) {
+    const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
+    record_event(path, hit.t, material.albedo(hit.point, path.direction, context),
+                 hit.point.shading_normal);
+    if (jobs_.layers.on()) jobs_.layers.transmittance(path.result, transmittance_of(path));
+    path.sample.alpha = 1;
+  }
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  RandomStream random(setup_.seed, path.pixel, path.sample_key,
+                      stream_number(StreamPurpose::kScatter, path.flights));
+  if (is_cut(path)) {
+    count_cut(path, material.albedo(hit.point, path.direction, context));
+    path.is_dead = true;
+    return;
+  }
+  if (!survives(path, random)) {
+    path.is_dead = true;
+    return;
+  }
+  const Vec3f position = hit.point.position;
+  if (!material.is_specular() && scene_.lights->is_drawn()) {
+    const LightDraw light = draw_light(position, path.colors->spectra, random);
+    if (light.pdf > 0) {
+      const MaterialValue f =
+          material.evaluate(hit.point, path.direction, light.direction, random, context);
+      const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
+      const Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
+      if (!is_black(radiance)) {
+        const Departure departure = depart(path, hit, light.direction);
+        shadows_.add(static_cast<uint32_t>(slot), departure.origin, light.direction,
+                     shadow_end(light), departure.place, radiance, false);
+      }
+    }
+  }
+  const auto next = material.sample(hit.point, path.direction, random, context);
+  if (!next || is_black(next->weight)) {
+    path.is_dead = true;
+    return;
+  }
+  path.throughput *= next->weight;
+  if (is_black(path.throughput)) {  // no channel of the surface has what was left of the path's
+    path.is_dead = true;
+    return;
+  }
+  path.is_coloured = true;  // equal at these wavelengths is not equal at all
+  path.only_hero = path.only_hero || next->hero_only;
+  path.pdf = next->specular ? 0.0F : next->pdf;
+  const Departure departure = depart(path, hit, next->direction);
+  set_place(path, departure.place);
+  turn(path, position, departure.origin, next->direction);
+}
+
+void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
+  ScenePath& path = paths_[slot];
+  MediumWalkers::Origin scatterer{path.medium, static_cast<uint32_t>(component)};
+  const auto& origins = path.colors->walkers(path.medium).origins;
+  if (!origins.empty()) scatterer = origins[component];
+  component = scatterer.component;
+  const SceneMedium& medium = scene_.media[scatterer.medium];
+  if (jobs_.layers.on()) {
+    jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
+  }
+  if (path.scatterings++ == 0) {
+    record_event(path, t, medium.albedo(component, setup_.factory->rgb()), -path.direction);
+    path.sample.alpha = 1;
+  }
+  RandomStream random(setup_.seed, path.pixel, path.sample_key,
+                      stream_number(StreamPurpose::kScatter, path.flights));
+  if (is_cut(path)) {
+    count_cut(path, Channels(1));
+    path.is_dead = true;
+    return;
+  }
+  if (!survives(path, random)) {
+    path.is_dead = true;
+    return;
+  }
+  const Vec3f position = path.origin + path.direction * t;
+  const PhaseFunction& phase = medium.phase(component);
+  if (scene_.lights->is_drawn()) {
+    const bool in_rgb = sees_rgb(path);
+    const LightDraw light = draw_light(position, light_spectra(path, in_rgb), random);
+    if (light.pdf > 0) {
+      // The phase function is its own density.
+      const float value = phase.evaluate(path.direction, light.direction);
+      const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
+      const Channels radiance = light_throughput(path, in_rgb) * light.radiance * share;
+      if (!is_black(radiance)) {
+        shadows_.add(static_cast<uint32_t>(slot), position, light.direction, shadow_end(light),
+                     path.place, radiance, in_rgb);
+      }
+    }
+  }
+  const EmissionGuide* const guide = guide_of(path.medium);
+  if (guide != nullptr) draw_emission(slot, *guide, position, phase, random);
+  const float u1 = random.uniform();
+  const float u2 = random.uniform();
+  const PhaseSample next = phase.sample(path.direction, u1, u2);
+  path.pdf = next.pdf;
+  turn(path, position, position, next.direction);
+  if (guide != nullptr) {
+    path.emission_share = next.pdf / (next.pdf + guide->pdf(position, next.direction));
+  }
+}
+
+void SceneWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
+                                   const Vec3f& position, const PhaseFunction& phase,
+                                   RandomStream& random) {
+  const ScenePath& path = paths_[slot];
+  const auto drawn = guide.sample(position, random);
+  if (!drawn || !(drawn->pdf > 0)) return;
+  // The phase function is its own density; the balance heuristic leaves this of f / pdf.
+  const float value = phase.evaluate(path.direction, drawn->direction);
+  emissions_.add(static_cast<uint32_t>(slot), path, position, drawn->direction,
+                 path.throughput * (value / (value + drawn->pdf)));
+}
+
+}  // namespace freepath

@@ -1,0 +1,172 @@
+#pragma once
+/// @file A wavefront of paths through a scene of media, surfaces and lights.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "freepath/base/random.h"
+#include "freepath/paths/emission_tracer.h"
+#include "freepath/paths/open_jobs.h"
+#include "freepath/paths/path_colors.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/paths/path_state.h"
+#include "freepath/paths/path_wavefront.h"
+#include "freepath/paths/shadow_tracer.h"
+#include "freepath/paths/walk_batches.h"
+#include "freepath/sensors/film.h"
+
+namespace freepath {
+
+/// What all paths of a picture of a scene share.
+struct SceneSetup {
+  const PathScene* scene = nullptr;
+  const ColorFactory* factory = nullptr;
+  uint64_t seed = 0;
+  uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
+  /// Russian roulette is played where no channel's throughput reaches this.
+  float roulette_threshold = 0.25F;
+  /// Whether scatterings in emissive media also look for their light along lines of its own; where
+  /// nothing is said, if little of the medium glows.
+  std::optional<bool> samples_emission = {};
+  std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
+  /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
+  std::vector<std::shared_ptr<const PathColors>> colors;
+  uint32_t first_set = 0;
+};
+
+/// Traces paths through a scene: to the next surface or collision, scatter with next-event
+/// estimation and multiple importance sampling [Veach97, balance heuristic], Russian roulette,
+/// until every path has ended. One wavefront for each thread; its memory is used again.
+class SceneWavefront {
+ public:
+  explicit SceneWavefront(const SceneSetup& setup);
+  SceneWavefront(const SceneWavefront&) = delete;  // its parts refer to each other
+  SceneWavefront& operator=(const SceneWavefront&) = delete;
+
+  /// Traces jobs as long as there are any, and adds the samples of each to the film when its last
+  /// path has ended, each pixel's in the order of their numbers.
+  /// @return false if they were stopped
+  bool trace(const PathJobSource& jobs, Film& film);
+  /// Traces one job.
+  bool trace(const PathJob& job, Film& film);
+
+  const PathWavefront::Counts& counts() const { return counts_; }
+
+ private:
+  /// Starts paths in all slots that are free, as far as there are jobs.
+  void start_paths(const PathJobSource& jobs, const Film& film);
+  /// Fills order_.
+  void set_order(const PathJob& job);
+  /// @param number of the newest job's paths
+  void start_path(std::size_t number, ScenePath& path);
+  /// Takes in the paths that have ended, and the jobs that have with them.
+  void end_paths(const PathJobSource& jobs, Film& film);
+  /// @param pixel of the picture
+  const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
+    return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
+  }
+  /// Sends all paths on: those in vacuum at once, others by their walkers.
+  void fly();
+  void fly_in_vacuum(std::size_t slot);
+  void take_flight(std::size_t slot, const Walker& walker, std::size_t i, bool weighted);
+  /// Whether the surface at which a ray ends has to be known before it flies.
+  bool needs_surfaces_first(const ScenePath& path) const;
+  void find_surface(ScenePath& path) const;
+
+  /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
+  bool sees_rgb(const ScenePath& path) const;
+  const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
+  /// A path's throughput in the channels of these spectra.
+  static Channels light_throughput(const ScenePath& path, bool in_rgb);
+  void escape(ScenePath& path);
+  /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
+  /// opaque one is never passed over, nor a light; ties_ are the others.
+  std::optional<SurfaceHit> choose_surface(const ScenePath& path);
+  /// The first surface at the place where a ray ends that its alpha lets be there; ties_ are the
+  /// others that are.
+  std::optional<SurfaceHit> first_there(const ScenePath& path);
+  /// Which of several surfaces at a place is met: the highest, and of equal ones the nearest.
+  int rank(uint32_t shape) const;
+  void meet_surface(std::size_t slot);
+  void cross_boundary(ScenePath& path, const SurfaceHit& hit);
+  /// Goes on where the surface at which a ray ends is not there.
+  void pass_hole(ScenePath& path);
+  void scatter_at_surface(std::size_t slot, const SurfaceHit& hit);
+  /// Where a new ray starts at a surface, and the media that are there.
+  struct Departure {
+    Vec3f origin;
+    PlaceId place;
+  };
+  Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction);
+  void set_place(ScenePath& path, PlaceId place) const {
+    path.place = place;
+    path.medium = places_.medium(place);
+  }
+  ShadowEnd shadow_end(const LightDraw& light) const {
+    if (!light.area || light.area->light >= shapes_of_lights_.size()) return {light.distance};
+    const std::optional<uint32_t>& shape = shapes_of_lights_[light.area->light];
+    if (!shape) return {light.distance};
+    return {light.distance, ShadowEnd::Target{*shape, light.area->primitive}};
+  }
+  /// A light for a position; what its own alpha leaves of it.
+  LightDraw draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                       RandomStream& random) const;
+  /// Whether a path goes on at a surface as if there were none.
+  bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
+  void scatter_in_medium(std::size_t slot, float t, std::size_t component);
+  /// Null where the flights of paths find all that a medium emits.
+  const EmissionGuide* guide_of(MediumId medium) const {
+    const bool wanted = setup_.samples_emission.value_or(!setup_.factory->glow_is_spread(medium));
+    return wanted ? setup_.factory->guide(medium) : nullptr;
+  }
+  void draw_emission(std::size_t slot, const EmissionGuide& guide, const Vec3f& position,
+                     const PhaseFunction& phase, RandomStream& random);
+  /// Whether the limit of scatterings ends a path.
+  bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
+  /// @param albedo of what would scatter it
+  void count_cut(const ScenePath& path, const Channels& albedo);
+  /// By Russian roulette.
+  /// @return false if the path has ended
+  bool survives(ScenePath& path, RandomStream& random) const;
+  void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
+  /// The same in a new direction.
+  void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
+  void record_event(ScenePath& path, float t, const Channels& albedo, const Vec3f& normal);
+  /// R, G, B on the film of both parts of a radiance.
+  Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
+  Spectrum transmittance_of(const ScenePath& path) const;
+  void finish(ScenePath& path);
+  void add_to_film(const OpenJobs::Job& done, Film& film) const;
+  /// @param sample of the job
+  void add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const;
+
+  const SceneSetup& setup_;
+  const PathScene& scene_;
+  MediaPlaces places_;
+  PlaceId camera_place_ = 0;
+  bool has_alpha_ = false;                                 // whether a shape of the scene has
+  std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
+  std::vector<TiedSurface> ties_;                          // of the surface that a path meets
+  std::vector<ScenePath> paths_;
+  std::size_t active_ = 0;
+  WalkBatches batches_;
+  FlightStream flights_;
+  ShadowTracer shadows_;
+  EmissionTracer emissions_;
+  OpenJobs jobs_;
+  uint32_t newest_ = 0;        // job, whose paths start now
+  std::size_t next_path_ = 0;  // of those
+  std::size_t paths_of_newest_ = 0;
+  bool has_more_jobs_ = false;
+  /// The newest job's samples (pixel · samples + sample) in the order in which they start.
+  std::vector<uint32_t> order_;
+  std::vector<uint32_t> sets_, begin_of_set_;     // for that order
+  const PathColors* colors_of_sample_ = nullptr;  // of the sample whose paths start now
+  bool records_spectra_ = false;
+  PixelWindow window_;  // of the film at work
+  PathWavefront::Counts counts_;
+};
+
+}  // namespace freepath

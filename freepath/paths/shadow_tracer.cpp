@@ -1,0 +1,176 @@
+#include "freepath/paths/shadow_tracer.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "freepath/base/random.h"
+#include "freepath/paths/alpha_chance.h"
+
+namespace freepath {
+namespace {
+
+/// Segments of one shadow ray draw from streams far apart; no path has so many flights.
+constexpr int kSegmentShift = 26;
+constexpr uint32_t kOrderedSegments = 31;
+/// Those beyond draw from streams by hash, above all others.
+constexpr uint32_t kHashedStreams = 0xE0000000U;
+
+uint32_t stream_of(uint32_t flight, uint32_t segment) {
+  const uint32_t stream = stream_number(StreamPurpose::kShadowWalk, flight);
+  if (segment < kOrderedSegments) return stream + (segment << kSegmentShift);
+  return kHashedStreams | philox({stream, segment, 0, 0}, {0, 0})[0] >> 3;
+}
+
+}  // namespace
+
+ShadowTracer::ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed,
+                           std::size_t slots)
+    : scene_(scene),
+      places_(places),
+      seed_(seed),
+      has_holes_(std::any_of(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& material) { return material.has_holes(); }) ||
+                 std::any_of(scene.shapes.begin(), scene.shapes.end(),
+                             [](const PathShape& shape) { return shape.alpha.has_value(); })),
+      batches_(slots, false) {}
+
+void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin,
+                               float end) {
+  if (!(begin < end)) return;
+  const MediumId medium = places_.medium(place);
+  if (medium == kVacuum) return;
+  const Walker& walker = path.colors->walker(medium, path.channel);
+  auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
+  segments_.emplace_back(1.0F);
+  set_ray(batch.rays, slot, shadow.origin + shadow.direction * begin, shadow.direction,
+          end - begin);
+  batch.rays.pixel[slot] = path.pixel;
+  batch.rays.sample[slot] = path.sample_key;
+  batch.rays.stream[slot] = stream_of(path.flights, shadow.segments++);
+}
+
+bool ShadowTracer::passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit,
+                          PlaceId& place) {
+  const float alpha = scene_.alpha_at(hit.point);
+  if (alpha == 0) return true;
+  const PathShape& shape = scene_.shapes[hit.point.shape];
+  const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
+  if (shape.material &&
+      !scene_.materials[*shape.material].is_hole(hit.point, shadow.direction, context)) {
+    shadow.radiance *= 1 - alpha;
+    return alpha < 1;
+  }
+  // Media on both sides of it have no mean.
+  const AlphaChance chance{seed_, path.pixel, path.sample_key,
+                           stream_number(StreamPurpose::kShadowWalk, path.flights)};
+  if (chance.meets(hit.place.key, alpha)) {
+    place = places_.cross(place, hit.point.shape, !hit.from_inside);
+  }
+  return true;
+}
+
+void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) {
+  const Surfaces& surfaces = *scene_.surfaces;
+  float begin = 0;
+  PlaceId place = shadow.place;
+  Vec3f origin = shadow.origin;
+  const auto is_end = [&](const RayPlace& place) {
+    return surfaces.is_end(origin, shadow.direction, place,
+                           {shadow.end.distance - begin, shadow.end.target});
+  };
+  while (begin < shadow.end.distance) {
+    const auto hit = surfaces.intersect(origin, shadow.direction, 0, shadow.end.distance - begin);
+    if (!hit) break;
+    ties_.clear();
+    if (hit->is_tied) surfaces.find_ties(origin, shadow.direction, *hit, ties_);
+    bool ends = is_end(hit->place);
+    const Vec3f beyond = surfaces.offset_ray_origin(hit->point, shadow.direction);
+    const float end = begin + hit->t;
+    add_segment(shadow, path, place, begin, end);
+    bool is_free = ends || passes(shadow, path, *hit, place);
+    for (const TiedSurface& tied : ties_) {
+      // What a ray from beyond meets may wait.
+      if (!surfaces.is_beyond(tied.place, beyond, shadow.direction)) continue;
+      const SurfaceHit there = surfaces.describe(origin, shadow.direction, tied);
+      ends = ends || is_end(there.place);
+      is_free = is_free && (ends || passes(shadow, path, there, place));
+    }
+    if (ends) return;
+    if (!is_free) {
+      shadow.radiance = Channels();
+      return;
+    }
+    begin = end;
+    origin = beyond;
+  }
+  add_segment(shadow, path, place, begin, shadow.end.distance);
+}
+
+void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
+  shadow.first_segment = static_cast<uint32_t>(segments_.size());
+  if (has_holes_ && scene_.surfaces) {
+    trace_porous_surfaces(shadow, path);
+    return;
+  }
+  if (!scene_.surfaces) {
+    add_segment(shadow, path, shadow.place, 0, shadow.end.distance);
+    return;
+  }
+  float begin = 0;
+  PlaceId place = shadow.place;
+  std::optional<RayPlace> last;  // which crossing came before
+  while (true) {
+    if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings_,
+                                  last ? &*last : nullptr)) {
+      shadow.radiance = Channels();
+      return;
+    }
+    for (const BoundaryCrossing& crossing : crossings_.all()) {
+      // Those at one place are crossed as one: nothing lies between them.
+      if (!last || !crossing.place.is_tied(*last)) {
+        const auto end = static_cast<float>(crossing.place.t);
+        add_segment(shadow, path, place, begin, end);
+        begin = end;
+      }
+      last = crossing.place;
+      place = places_.cross(place, crossing.shape, crossing.enters);
+    }
+    if (!crossings_.overflowed()) break;
+  }
+  add_segment(shadow, path, place, begin, shadow.end.distance);
+}
+
+void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {
+  if (shadows_.empty()) return;
+  batches_.clear();
+  segments_.clear();
+  owners_.clear();
+  for (Shadow& shadow : shadows_) {
+    trace_surfaces(shadow, paths[shadow.owner]);
+    owners_.resize(segments_.size(), shadow.owner);
+  }
+  for (WalkBatches::Batch* const batch : batches_.finish()) {
+    batch->walker->transmittance(batch->rays, flights_, statistics);
+    const int channels = batch->walker->transmittance_channels();
+    for (std::size_t i = 0; i < batch->count; ++i) {
+      const uint32_t segment = batch->owners[i];
+      if (channels == 1) {
+        segments_[segment] = Channels(flights_.weight[0][i]);
+      } else {
+        for (int c = 0; c < channels; ++c) segments_[segment][c] = flights_.weight[c][i];
+      }
+      paths[owners_[segment]].lookups += flights_.lookups[i];
+    }
+  }
+  for (Shadow& shadow : shadows_) {
+    // In the order of the ray's way, whatever batches there were.
+    for (uint32_t i = 0; i < shadow.segments; ++i) {
+      shadow.radiance *= segments_[shadow.first_segment + i];
+    }
+    ScenePath& path = paths[shadow.owner];
+    (shadow.is_rgb ? path.rgb : path.radiance) += shadow.radiance;
+  }
+  shadows_.clear();
+}
+
+}  // namespace freepath

@@ -1,0 +1,17 @@
+#pragma once
+/// @file Which boundaries of media need not be traced.
+
+#include "freepath/geometry/shape_geometry.h"
+#include "freepath/paths/path_scene.h"
+
+namespace freepath {
+
+/// Makes PathScene::surfaces of its shapes, and PathScene::is_clear.
+///
+/// A medium of voxels ends where its voxels do. Where its boundary lies wholly outside of them,
+/// with vacuum beyond and no other surface within, the boundary is of no use: it is left out, and
+/// the medium fills the vacuum too. So it is with a homogeneous medium whose boundary is a box,
+/// which it then fills by itself. This is done for one medium of a scene, the first that allows it.
+void simplify_regions(SurfaceScene surfaces, PathScene& scene);
+
+}  // namespace freepath

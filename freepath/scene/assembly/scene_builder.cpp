@@ -1,0 +1,120 @@
+#include "freepath/scene/assembly/scene_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/scene/assembly/build_lights.h"
+#include "freepath/scene/assembly/build_materials.h"
+#include "freepath/scene/assembly/build_media.h"
+#include "freepath/scene/assembly/build_shapes.h"
+#include "freepath/scene/assembly/build_textures.h"
+#include "freepath/scene/assembly/region_simplifier.h"
+#include "freepath/scene/pbrt/parser.h"
+
+namespace freepath {
+namespace {
+
+/// All that has a place, and the camera.
+Box3d extent_of(const BuiltShapes& shapes, const SceneCamera& camera) {
+  Box3d extent;
+  if (!shapes.empty()) {
+    const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
+    if (!bounds.isEmpty()) extent = Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
+  }
+  const float x = 0.5F * static_cast<float>(camera.width());
+  const float y = 0.5F * static_cast<float>(camera.height());
+  extent.extendBy(camera.ray(x, y, 0.5F, 0.5F).origin);
+  return extent;
+}
+
+/// Rays know places in single precision, and products of coordinates have to fit it too.
+constexpr double kFarthest = 1e15;
+
+void check_places(const PbrtScene& pbrt, const Box3d& box, const char* what) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double farthest = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
+    if (farthest < kFarthest) continue;
+    fail(
+        "{}: {} reach to {:.3g} along {}, and nothing further than {:.0e} can be rendered: scale "
+        "the "
+        "scene",
+        pbrt.file, what, farthest, "xyz"[axis], kFarthest);
+  }
+}
+
+/// Near what is seen: the middle of the media that have bounds, else of everything.
+Vec3d origin_of(const PathScene& scene, const Box3d& extent) {
+  Box3d box;
+  for (const SceneMedium& medium : scene.media) {
+    if (medium.bounds().size().length() < 2 * extent.size().length()) {
+      box.extendBy(medium.bounds());
+    }
+  }
+  return (box.isEmpty() ? extent : box).center();
+}
+
+/// Remembers what was read.
+class RecordingReader final : public FileReader {
+ public:
+  bool exists(const std::filesystem::path& path) const override { return disk_.exists(path); }
+  std::string read(const std::filesystem::path& path, std::size_t limit) const override {
+    files_.push_back(path);
+    return disk_.read(path, limit);
+  }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  DiskFileReader disk_;
+  mutable std::vector<std::filesystem::path> files_;
+};
+
+}  // namespace
+
+BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
+                       const BuildOptions& options) {
+  BuiltScene built;
+  PathScene& scene = built.scene;
+  scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space(name_of(pbrt.color_space)));
+  BuildContext context{pbrt, diagnostics, scene};
+  context.invalid = options.invalid;
+  FilmSize size;
+  built.picture = build_picture(context, size);
+  scene.exposure_scale = built.picture.exposure_scale;
+  scene.white_balance = Imath::M33f(built.picture.white_balance);
+  name_media(context);
+  build_camera(context, options.size.value_or(size));
+  build_textures(context);
+  build_materials(context);
+  BuiltShapes shapes = build_shapes(context);
+  const Box3d extent = extent_of(shapes, *scene.camera);
+  check_places(pbrt, extent, "shapes or the camera");
+  build_media(context, extent);
+  for (const SceneMedium& medium : scene.media) {
+    check_places(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
+  }
+  scene.origin = origin_of(scene, extent);
+  scene.textures.set_origin(scene.origin);
+  scene.shapes = shapes.shapes;
+  SceneLightsDescription lights;
+  lights.lights = build_lights(context);
+  lights.emissions = shapes.emissions;
+  lights.area_lights = build_area_lights(shapes, scene.origin);
+  lights.origin = scene.origin;
+  scene.lights.emplace(std::move(lights), *scene.spectra);
+  simplify_regions(std::move(shapes.surfaces), scene);
+  built.files = std::move(context.files);
+  return built;
+}
+
+BuiltScene load_scene(const std::filesystem::path& file, Diagnostics& diagnostics,
+                      const BuildOptions& options) {
+  const RecordingReader reader;
+  BuiltScene built = build_scene(parse_pbrt_file(file, diagnostics, reader), diagnostics, options);
+  built.files.insert(built.files.begin(), reader.files().begin(), reader.files().end());
+  return built;
+}
+
+}  // namespace freepath

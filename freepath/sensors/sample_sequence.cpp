@@ -1,0 +1,58 @@
+#include "freepath/sensors/sample_sequence.h"
+
+namespace freepath {
+namespace {
+
+// Streams of the hashes of Sobol' points, apart from those of independent numbers.
+constexpr uint32_t kHashStreams = 0xC0000000U;
+
+constexpr uint32_t reverse_bits(uint32_t word) {
+  word = (word >> 16) | (word << 16);
+  word = ((word >> 8) & 0x00FF00FFU) | ((word & 0x00FF00FFU) << 8);
+  word = ((word >> 4) & 0x0F0F0F0FU) | ((word & 0x0F0F0F0FU) << 4);
+  word = ((word >> 2) & 0x33333333U) | ((word & 0x33333333U) << 2);
+  return ((word >> 1) & 0x55555555U) | ((word & 0x55555555U) << 1);
+}
+
+/// A nested uniform scramble of a fraction whose bits are in reverse, and come out in order: a
+/// permutation in which each bit is flipped by a hash of those below it alone, an idea of
+/// [Laine11]; the constants are of [Vegdahl21].
+constexpr uint32_t scramble_reversed(uint32_t reversed, uint32_t hash) {
+  reversed ^= reversed * 0x3D20ADEAU;
+  reversed += hash;
+  reversed *= (hash >> 16) | 1U;
+  reversed ^= reversed * 0x05526C56U;
+  reversed ^= reversed * 0x53A22864U;
+  return reverse_bits(reversed);
+}
+
+/// Hashes for the order, the first and the second coordinate.
+std::array<uint32_t, 4> hashes(uint64_t seed, uint32_t pixel, uint32_t dimension) {
+  return philox({0, kHashStreams + dimension, 0, pixel},
+                {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
+}
+
+}  // namespace
+
+std::array<float, 2> SampleSequence::pair(uint32_t dimension) const {
+  if (kind_ == SampleKind::kIndependent) {
+    RandomStream stream(seed_, pixel_, sample_, kSampleStreams + dimension);
+    const float first = stream.uniform();
+    return {first, stream.uniform()};
+  }
+  const auto [order, first, second, unused] = hashes(seed_, pixel_, dimension);
+  const uint32_t index = scramble_reversed(reverse_bits(sample_), order);
+  return {uniform_from_bits(scramble_reversed(index, first)),
+          uniform_from_bits(scramble_reversed(sobol_second_reversed(index), second))};
+}
+
+float SampleSequence::single(uint32_t dimension) const {
+  if (kind_ == SampleKind::kIndependent) {
+    return RandomStream(seed_, pixel_, sample_, kSampleStreams + dimension).uniform();
+  }
+  const auto [order, first, second, unused] = hashes(seed_, pixel_, dimension);
+  return uniform_from_bits(
+      scramble_reversed(scramble_reversed(reverse_bits(sample_), order), first));
+}
+
+}  // namespace freepath

@@ -1,0 +1,202 @@
+#include "freepath/sensors/scene_camera.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "freepath/base/error.h"
+#include "freepath/base/octahedral.h"
+
+namespace freepath {
+namespace {
+
+Vec3d row_of(const Matrix4d& matrix, int row) {
+  return {matrix[row][0], matrix[row][1], matrix[row][2]};
+}
+
+void check_transform(const Matrix4d& matrix) {
+  // Walks take no longer lengths for finite (transport/entry-inl.h).
+  constexpr double kLargest = 1e30;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      if (!(std::abs(matrix[i][j]) <= kLargest)) {
+        fail("the camera's transform has the entry {}; it must be a number up to {}", matrix[i][j],
+             kLargest);
+      }
+    }
+    if (matrix[i][3] != (i == 3 ? 1 : 0)) {
+      fail("the camera's transform is a projection; it must be affine");
+    }
+  }
+  // The volume between the images of the axes, whatever their lengths.
+  const Vec3d x = row_of(matrix, 0).normalized();
+  const Vec3d y = row_of(matrix, 1).normalized();
+  const Vec3d z = row_of(matrix, 2).normalized();
+  constexpr double kSmallestVolume = 1e-12;
+  if (!(std::abs(x.dot(y.cross(z))) > kSmallestVolume)) {
+    fail("the camera's transform has no inverse: it makes space flat");
+  }
+}
+
+void check_film(int width, int height) {
+  if (width < 1 || height < 1) {
+    fail("the film has {}x{} pixels; it needs at least 1x1", width, height);
+  }
+}
+
+void check_lens(const Lens& lens) {
+  if (!(lens.radius >= 0) || !std::isfinite(lens.radius)) {
+    fail("the lens has the radius {}; it must be 0 or more", lens.radius);
+  }
+  if (lens.radius > 0 && !(lens.focal_distance > 0)) {
+    fail("the plane in focus is {} ahead of the camera; it must be more than 0",
+         lens.focal_distance);
+  }
+}
+
+/// What the film shows: the window if there is one, else the whole screen.
+ScreenWindow screen_of(const std::optional<double>& frame_aspect_ratio,
+                       const std::optional<ScreenWindow>& window, int width, int height) {
+  if (window) {
+    const double x = window->x_max - window->x_min;
+    const double y = window->y_max - window->y_min;
+    if (!std::isfinite(x) || !std::isfinite(y) || x == 0 || y == 0) {
+      fail("the screen window is {}..{} by {}..{}; it must be finite and not empty", window->x_min,
+           window->x_max, window->y_min, window->y_max);
+    }
+    return *window;
+  }
+  const double aspect = frame_aspect_ratio.value_or(static_cast<double>(width) / height);
+  if (!(aspect > 0) || !std::isfinite(aspect)) {
+    fail("the frame's aspect ratio is {}; it must be more than 0", aspect);
+  }
+  return aspect > 1 ? ScreenWindow{-aspect, aspect, -1, 1}
+                    : ScreenWindow{-1, 1, -1 / aspect, 1 / aspect};
+}
+
+struct Point2 {
+  float x, y;
+};
+
+/// Uniform on the unit disk: Shirley and Chiu's map [Shirley97] of squares around the centre to
+/// circles, which keeps areas and neighbours together.
+Point2 sample_disk(float u, float v) {
+  const float a = 2 * u - 1;
+  const float b = 2 * v - 1;
+  if (a == 0 && b == 0) return {0, 0};
+  constexpr float kEighth = 0.25F * std::numbers::pi_v<float>;
+  const bool is_beside = std::abs(a) > std::abs(b);
+  const float radius = is_beside ? a : b;
+  const float angle = is_beside ? kEighth * (b / a) : kEighth * (2 - a / b);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// The point of the unit square that the octahedral map joins to one beyond an edge: on the same
+/// edge, mirrored at its middle, and as far within.
+Point2 wrap_octahedral(Point2 p) {
+  if (p.x < 0 || p.x > 1) p = {p.x < 0 ? -p.x : 2 - p.x, 1 - p.y};
+  if (p.y < 0 || p.y > 1) p = {1 - p.x, p.y < 0 ? -p.y : 2 - p.y};
+  return p;
+}
+
+}  // namespace
+
+SceneCamera::Projective::Projective(const PerspectiveCamera& camera, const Matrix4d& matrix,
+                                    int width, int height)
+    : Projective(screen_of(camera.frame_aspect_ratio, camera.screen_window, width, height),
+                 half_extent(camera.fov), camera.lens, false, matrix, width, height) {}
+
+SceneCamera::Projective::Projective(const OrthographicCamera& camera, const Matrix4d& matrix,
+                                    int width, int height)
+    : Projective(screen_of(camera.frame_aspect_ratio, camera.screen_window, width, height), 1,
+                 camera.lens, true, matrix, width, height) {}
+
+SceneCamera::Projective::Projective(const ScreenWindow& screen, double screen_scale,
+                                    const Lens& lens, bool parallel, const Matrix4d& matrix,
+                                    int width, int height)
+    : is_parallel(parallel), has_lens(lens.radius > 0), origin(row_of(matrix, 3)) {
+  check_lens(lens);
+  const Vec3d x = row_of(matrix, 0);
+  const Vec3d y = row_of(matrix, 1);
+  const Vec3d z = row_of(matrix, 2);
+  // Directions in units of the depth's image, lest a scale overflow when they are made unit
+  // vectors.
+  const double unit = z.length();
+  ahead = Vec3f(z / unit);
+  focus = static_cast<float>(1 / (unit * lens.focal_distance));
+  const double film_scale = parallel ? screen_scale : screen_scale / unit;
+  corner = x * (film_scale * screen.x_min) + y * (film_scale * screen.y_max);
+  step_x = x * (film_scale * (screen.x_max - screen.x_min) / width);
+  step_y = y * (film_scale * (screen.y_min - screen.y_max) / height);
+  lens_x = Vec3f(x * lens.radius);
+  lens_y = Vec3f(y * lens.radius);
+}
+
+CameraRay SceneCamera::Projective::ray(float film_x, float film_y, float lens_u,
+                                       float lens_v) const {
+  const Vec3d film =
+      corner + step_x * static_cast<double>(film_x) + step_y * static_cast<double>(film_y);
+  Vec3d start = origin;
+  Vec3f direction = ahead;
+  if (is_parallel) {
+    start += film;
+  } else {
+    direction += Vec3f(film);
+  }
+  if (has_lens) {
+    // The ray still meets the plane in focus where the one through the lens' centre does.
+    const Point2 point = sample_disk(lens_u, lens_v);
+    const Vec3f lens = lens_x * point.x + lens_y * point.y;
+    start += Vec3d(lens);
+    direction -= lens * focus;
+  }
+  return {start, direction.normalized()};
+}
+
+CameraRay SceneCamera::Spherical::ray(float film_x, float film_y) const {
+  const Point2 p{film_x * per_width, film_y * per_height};
+  if (mapping == SphericalMapping::kEqualArea) {
+    const Point2 within = wrap_octahedral(p);
+    const Vec3f local = direction_from_octahedral({within.x, within.y});
+    return {origin, (right * local.x + up * local.z + ahead * local.y).normalized()};
+  }
+  const float polar = std::numbers::pi_v<float> * p.y;
+  const float azimuth = 2 * std::numbers::pi_v<float> * p.x;
+  const Vec3f level = right * std::cos(azimuth) + ahead * std::sin(azimuth);
+  return {origin, (level * std::sin(polar) + up * std::cos(polar)).normalized()};
+}
+
+SceneCamera::Rays SceneCamera::make_rays(const CameraModel& model, const Matrix4d& matrix,
+                                         int width, int height) {
+  check_film(width, height);
+  check_transform(matrix);
+  if (const auto* camera = std::get_if<PerspectiveCamera>(&model)) {
+    return Projective(*camera, matrix, width, height);
+  }
+  if (const auto* camera = std::get_if<OrthographicCamera>(&model)) {
+    return Projective(*camera, matrix, width, height);
+  }
+  const double unit = row_of(matrix, 2).length();
+  return Spherical{std::get<SphericalCamera>(model).mapping, row_of(matrix, 3),
+                   Vec3f(row_of(matrix, 0) / unit),          Vec3f(row_of(matrix, 1) / unit),
+                   Vec3f(row_of(matrix, 2) / unit),          1.0F / static_cast<float>(width),
+                   1.0F / static_cast<float>(height)};
+}
+
+SceneCamera::SceneCamera(const CameraModel& model, const Matrix4d& world_from_camera, int width,
+                         int height)
+    : width_(width), height_(height), rays_(make_rays(model, world_from_camera, width, height)) {}
+
+CameraRay SceneCamera::ray(float film_x, float film_y, float lens_u, float lens_v) const {
+  if (const auto* camera = std::get_if<Projective>(&rays_)) {
+    return camera->ray(film_x, film_y, lens_u, lens_v);
+  }
+  return std::get_if<Spherical>(&rays_)->ray(film_x, film_y);
+}
+
+bool SceneCamera::has_lens() const {
+  const auto* camera = std::get_if<Projective>(&rays_);
+  return camera != nullptr && camera->has_lens;
+}
+
+}  // namespace freepath

@@ -1,0 +1,44 @@
+#pragma once
+/// @file A picture small enough to compare methods on in a test.
+
+#include <memory>
+#include <string>
+
+#include "freepath/scene/volume_scene.h"
+#include "freepath/study/subject.h"
+#include "tests/media/make_field.h"
+
+namespace freepath::testing {
+
+/// A ball of uneven density under a constant sky, some 4 mean free paths thick; with `chromatic`
+/// extinction in the ratios 1 : 2 : 4.
+inline Subject small_subject(bool chromatic = false, int width = 64, int height = 48) {
+  const auto field = make_field(Vec3i(-12), Vec3i(12), [](const Vec3i& p) {
+    const float inside = 1 - static_cast<float>(p.x * p.x + p.y * p.y + p.z * p.z) / 150.0F;
+    return inside > 0 ? inside * (p.x / 4 % 2 == 0 ? 1.5F : 0.5F) : 0.0F;
+  });
+  Component component{.density = field};
+  component.sigma_s = chromatic ? Spectrum(0.1F, 0.2F, 0.4F) : Spectrum(0.25F);
+  component.sigma_a = Spectrum(0.02F);
+  const auto medium = std::make_shared<const Medium>(std::vector<Component>{component}, 4);
+  CameraOptions options;
+  options.width = width;
+  options.height = height;
+  const auto camera = std::make_shared<const Camera>(make_camera(*medium, options, UpAxis::kY));
+  LightOptions light;
+  light.environment = Spectrum(0.5F, 0.7F, 1.0F);
+  light.sun = false;
+  const auto lights = std::make_shared<const Lights>(make_lights(light, UpAxis::kY));
+  Subject subject;
+  subject.name = "ball";
+  subject.digest = chromatic ? "chromatic ball" : "ball";
+  subject.width = width;
+  subject.height = height;
+  subject.render = [medium, camera, lights](const RenderSettings& settings,
+                                            const ProgressFunction& progress) {
+    return render(*medium, *camera, *lights, settings, progress);
+  };
+  return subject;
+}
+
+}  // namespace freepath::testing
