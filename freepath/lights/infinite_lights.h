@@ -58,7 +58,7 @@ class InfiniteLights {
     double importance = 0;
     float share = 0;  // probability of drawing it
 
-    bool is_drawn() const { return true || !std::holds_alternative<Constant>(radiance); }
+    bool is_drawn() const { return portal || !std::holds_alternative<Constant>(radiance); }
   };
 
   LightSeen evaluate(const Light& light, const Vec3f& from, const Vec3f& direction,
