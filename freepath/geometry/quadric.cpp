@@ -100,18 +100,19 @@ QuadricRoots Quadric::intersect(const Vec3d& origin, const Vec3d& direction) con
   return kept;
 }
 
-QuadricPoint Quadric::describe(const Vec3d& near_surface) const {
+QuadricPoint Quadric::describe(const Vec3d& near_surface, bool needs_uv) const {
   QuadricPoint point;
   Vec3d p = near_surface;
-  const double phi = azimuth(p);
-  const double axis_distance = std::hypot(p.x, p.y);
-  point.u = phi / phi_max_;
+  const double axis_distance = std::sqrt(p.x * p.x + p.y * p.y);
+  if (needs_uv) point.u = azimuth(p) / phi_max_;
   switch (kind_) {
     case QuadricKind::kSphere:
       p *= radius_ / p.length();
       point.normal = p / radius_;
-      point.v = (std::acos(std::clamp(p.z / radius_, -1.0, 1.0)) - theta_min_) /
-                (theta_max_ - theta_min_);
+      if (needs_uv) {
+        point.v = (std::acos(std::clamp(p.z / radius_, -1.0, 1.0)) - theta_min_) /
+                  (theta_max_ - theta_min_);
+      }
       break;
     case QuadricKind::kDisk:
       p.z = z_min_;

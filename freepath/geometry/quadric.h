@@ -51,7 +51,8 @@ class Quadric {
   /// Where the line meets the part of the quadric that is there, on both sides of its origin.
   QuadricRoots intersect(const Vec3d& origin, const Vec3d& direction) const;
   /// What is known of a point near the surface, moved onto it.
-  QuadricPoint describe(const Vec3d& near_surface) const;
+  /// @param needs_uv or else u and v are left 0
+  QuadricPoint describe(const Vec3d& near_surface, bool needs_uv = true) const;
   Box3d bounds() const;
   /// Whether the surface may meet a parallelepiped; false only if it does not.
   bool may_meet(const std::array<Vec3d, 8>& corners) const;

@@ -79,6 +79,9 @@ struct SurfaceShape {
   uint32_t shape = 0;  ///< Of the scene's shapes; several may bear the same.
   /// Number of the first triangle or patch, where a shape is made of more than one mesh.
   uint32_t first_primitive = 0;
+  /// Whether anyone looks at its texture coordinates; quadrics, where they take arcs, leave them 0
+  /// otherwise.
+  bool needs_uv = true;
 };
 
 /// A copy of a group. A point of it goes through the shape's object_to_world first and then through

@@ -16,8 +16,8 @@ Matrix4d to_part(const SurfaceShape& shape, const Vec3d& origin) {
 
 TracedShape common(const SurfaceShape& shape) {
   const bool swaps = AffineTransform(shape.object_to_world).determinant() < 0;
-  return {shape.shape, shape.first_primitive, shape.is_boundary,
-          shape.reverse_orientation != swaps};
+  return {shape.shape, shape.first_primitive, shape.is_boundary, shape.reverse_orientation != swaps,
+          shape.needs_uv};
 }
 
 template <class Mesh>
@@ -180,7 +180,7 @@ LocalPoint TracedPatches::describe(uint32_t index, double u, double v) const {
 }
 
 LocalPoint TracedQuadric::describe(const Vec3d& near_surface) const {
-  const QuadricPoint p = quadric.describe(near_surface);
+  const QuadricPoint p = quadric.describe(near_surface, needs_uv);
   LocalPoint point;
   point.position = object_to_part.point(p.position);
   point.normal = part_to_object.normal_back(is_reversed ? -p.normal : p.normal);

@@ -42,6 +42,7 @@ struct TracedShape {
   uint32_t first_primitive = 0;
   bool is_boundary = false;
   bool is_reversed = false;  ///< The outside is not where the normal of the coordinates points.
+  bool needs_uv = true;      ///< SurfaceShape::needs_uv
   Box3d box{};               ///< Around it [part], once it is in a TracedPart.
 };
 

@@ -71,6 +71,19 @@ class RecordingReader final : public FileReader {
   mutable std::vector<std::filesystem::path> files_;
 };
 
+/// Texture coordinates where nothing looks at them.
+void leave_out_uv(const TextureTable& textures, BuiltShapes& built) {
+  const bool has_images =
+      std::any_of(built.emissions.begin(), built.emissions.end(),
+                  [](const AreaEmission& one) { return one.image.has_value(); });
+  if (has_images || textures.float_count() + textures.spectrum_count() > 0) return;
+  for (SurfaceShape& shape : built.surfaces.shapes) shape.needs_uv = false;
+  for (SurfaceShape& shape : built.invisible) shape.needs_uv = false;
+  for (auto& group : built.surfaces.groups) {
+    for (SurfaceShape& shape : group) shape.needs_uv = false;
+  }
+}
+
 }  // namespace
 
 BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
@@ -89,6 +102,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   build_textures(context);
   build_materials(context);
   BuiltShapes shapes = build_shapes(context);
+  leave_out_uv(scene.textures, shapes);
   const Box3d extent = extent_of(shapes, *scene.camera);
   check_places(pbrt, extent, "shapes or the camera");
   build_media(context, extent);
