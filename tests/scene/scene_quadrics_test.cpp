@@ -121,11 +121,11 @@ TEST(SceneQuadric, CutOnesAreNearlyMeshes) {
 TEST(SceneQuadric, HaveTextureCoordinatesWhereSomethingLooksAtThem) {
   const auto seen_v = [](const std::string& before) {
     Diagnostics diagnostics;
-    const BuiltScene built = build_scene(
-        parse(film() + "Camera \"perspective\"\nWorldBegin\n" + before +
-                  "Translate 0 0 4 Shape \"sphere\" \"float radius\" 1\n",
-              diagnostics),
-        diagnostics);
+    const BuiltScene built =
+        build_scene(parse(film() + "Camera \"perspective\"\nWorldBegin\n" + before +
+                              "Translate 0 0 4 Shape \"sphere\" \"float radius\" 1\n",
+                          diagnostics),
+                    diagnostics);
     const Vec3f origin(Vec3d(0.3, 0.2, 0) - built.scene.origin);
     const auto hit = built.scene.surfaces->intersect(origin, {0, 0, 1}, 0, 100);
     EXPECT_TRUE(hit);
@@ -134,7 +134,8 @@ TEST(SceneQuadric, HaveTextureCoordinatesWhereSomethingLooksAtThem) {
     return hit->point.v;
   };
   EXPECT_EQ(seen_v(""), 0);
-  const float v = seen_v(R"(Texture "t" "float" "constant" "float value" 1 )" "\n");
+  const float v = seen_v(R"(Texture "t" "float" "constant" "float value" 1 )"
+                         "\n");
   // From the lower pole, of which the ray meets the surroundings.
   EXPECT_NEAR(v, 1 - std::acos(-std::sqrt(1 - 0.13)) / std::numbers::pi, 1e-5);
 }
