@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <span>
 
@@ -29,7 +28,10 @@ class MediaSet {
   struct Entry {
     MediumId medium = kVacuum;
     int32_t count = 0;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
+    friend bool operator==(const Entry&, const Entry&) = default;
+    friend bool operator<(const Entry& a, const Entry& b) {
+      return a.medium < b.medium || (a.medium == b.medium && a.count < b.count);
+    }
   };
 
   /// Those whose number is not 0, by medium.
@@ -85,7 +87,9 @@ class MediaSet {
   }
   /// Any order.
   friend bool operator<(const MediaSet& a, const MediaSet& b) {
-    return std::ranges::lexicographical_compare(a.entries(), b.entries());
+    const std::span<const Entry> one = a.entries();
+    const std::span<const Entry> other = b.entries();
+    return std::lexicographical_compare(one.begin(), one.end(), other.begin(), other.end());
   }
 
  private:

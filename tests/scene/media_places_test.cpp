@@ -20,15 +20,15 @@ TEST(MediaPlaces, AreWhatTheSetsSay) {
   const auto any = [&](int count) { return static_cast<int>(random() % count); };
   std::string text = kUnlimited + film() + "Camera \"perspective\"\nWorldBegin\n";
   for (int medium = 0; medium < kMedia; ++medium) {
-    text += "MakeNamedMedium \"m" + std::to_string(medium) + "\" \"string type\" \"homogeneous\"\n";
+    text += "MakeNamedMedium \"m" + std::to_string(medium) + R"(" "string type" "homogeneous" )";
   }
   const auto name = [&](int medium) {
     return medium == kMedia ? std::string() : "m" + std::to_string(medium);
   };
   for (int shape = 0; shape < kShapes; ++shape) {
-    text += "AttributeBegin Material \"interface\" MediumInterface \"" + name(any(kMedia)) +
-            "\" \"" + name(any(kMedia + 1)) + "\" Translate " + std::to_string(3 * shape) +
-            " 0 9 Shape \"sphere\" AttributeEnd\n";
+    text += R"(AttributeBegin Material "interface" MediumInterface ")" + name(any(kMedia)) +
+            R"(" ")" + name(any(kMedia + 1)) + R"(" Translate )" + std::to_string(3 * shape) +
+            R"( 0 9 Shape "sphere" AttributeEnd )";
   }
   Diagnostics diagnostics;
   const BuiltScene built = build_scene(parse(text, diagnostics), diagnostics);
