@@ -79,8 +79,8 @@ struct SurfaceShape {
   uint32_t shape = 0;  ///< Of the scene's shapes; several may bear the same.
   /// Number of the first triangle or patch, where a shape is made of more than one mesh.
   uint32_t first_primitive = 0;
-  /// Whether anyone looks at its texture coordinates; quadrics, where they take arcs, leave them 0
-  /// otherwise.
+  /// Whether its texture coordinates are read. Otherwise quadrics, which take two inverse
+  /// trigonometric functions for them, leave them 0.
   bool needs_uv = true;
 };
 

@@ -38,9 +38,10 @@ class InfiniteLights {
   /// Whether there is something to draw.
   bool is_drawn() const { return is_drawn_; }
 
-  /// What a ray sees that escapes, and the density of `sample` there: 0 of what is not drawn.
+  /// The radiance that an escaping ray sees, and the density of `sample` in its direction [1/sr],
+  /// to which lights that are not drawn add nothing.
   LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
-  /// A draw of all lights together. Of density 0 if there is nothing to draw.
+  /// A draw of all lights together, of density 0 if there is nothing to draw.
   LightDraw sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
                    float u2) const;
 

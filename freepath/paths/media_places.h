@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "freepath/paths/media_set.h"
@@ -24,6 +23,7 @@ class MediaPlaces {
   MediaPlaces(const PathScene& scene, const ColorFactory& factory)
       : scene_(scene), factory_(factory) {}
 
+  /// The number of a set, which is made if there is none.
   PlaceId of(const MediaSet& media) {
     const auto [known, is_new] = numbers_.try_emplace(media, static_cast<PlaceId>(sets_.size()));
     if (is_new) {
@@ -33,7 +33,7 @@ class MediaPlaces {
     return known->second;
   }
 
-  /// What these media are together: ColorFactory::medium_of.
+  /// The medium, or combination of media, that fills a place: ColorFactory::medium_of.
   MediumId medium(PlaceId place) const { return media_[place]; }
 
   /// The media beyond the boundary of a shape.

@@ -1,6 +1,7 @@
 #include "freepath/paths/open_jobs.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace freepath {
 namespace {
@@ -42,12 +43,14 @@ std::size_t OpenJobs::place_of(std::size_t paths) const {
 uint32_t OpenJobs::open(const PathJob& job, const Film& film) {
   const std::size_t paths = job.sample_count() * paths_per_sample_;
   const std::size_t first = place_of(paths);
-  const std::size_t end = first + paths;
-  if (results.size() < end) results.resize(end);
-  std::fill(results.begin() + static_cast<std::ptrdiff_t>(first),
-            results.begin() + static_cast<std::ptrdiff_t>(end), PathSample{});
+  const auto renew = [&](auto& values) {
+    values.resize(std::max(values.size(), first + paths));
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), paths,
+                typename std::decay_t<decltype(values)>::value_type{});
+  };
+  renew(results);
+  if (film.buckets().count > 0) renew(spectra);
   layers.renew(first, paths, film);
-  if (film.buckets().count > 0) spectra.resize(std::max(spectra.size(), end));
   uint32_t number = 0;
   while (number < jobs_.size() && jobs_[number].is_open) ++number;
   if (number == jobs_.size()) jobs_.emplace_back();

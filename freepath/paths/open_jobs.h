@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "freepath/base/channels.h"
@@ -15,7 +14,7 @@ namespace freepath {
 
 /// Jobs whose paths are in flight together, and what these have found so far. The next job may
 /// begin while the last paths of those before are still on their way: only so are lanes full where
-/// few paths scatter a thousand times.
+/// a few paths scatter far more often than the others.
 class OpenJobs {
  public:
   /// Forgets all jobs.

@@ -155,7 +155,8 @@ Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectr
 }
 
 SceneMedium SceneMedium::homogeneous(std::string name, SceneMediumComponent component,
-                                     const Matrix4d& unit_to_world, float largest_sigma_t) {
+                                     const Box3d& box, const Matrix4d& box_to_world,
+                                     float largest_sigma_t) {
   // Filters let the outermost voxels fade, so that the box ends at their middles.
   constexpr int kVoxels = 3;
   BrickMapBuilder builder(Vec3i(0), Vec3i(kVoxels - 1), 0);
@@ -165,9 +166,10 @@ SceneMedium SceneMedium::homogeneous(std::string name, SceneMediumComponent comp
   auto field = std::make_shared<Field>();
   field->name = name;
   field->voxels = std::move(builder).finish();
-  Matrix4d index_to_unit;
-  index_to_unit.setScale(1.0 / (kVoxels - 1));
-  field->index_to_world = index_to_unit * unit_to_world;
+  Matrix4d index_to_box;
+  index_to_box.setScale(box.size() / double{kVoxels - 1});
+  for (int axis = 0; axis < 3; ++axis) index_to_box[3][axis] = box.min[axis];
+  field->index_to_world = index_to_box * box_to_world;
   Component uniform;
   uniform.density = field;
   uniform.sigma_s = Spectrum(largest_sigma_t);
@@ -178,8 +180,8 @@ SceneMedium SceneMedium::homogeneous(std::string name, SceneMediumComponent comp
   return medium;
 }
 
-SceneMedium SceneMedium::in_box(const Matrix4d& unit_to_world) const {
-  return homogeneous(name_, components_[0], unit_to_world, medium_->components()[0].sigma_s[0]);
+SceneMedium SceneMedium::in_box(const Box3d& box, const Matrix4d& box_to_world) const {
+  return homogeneous(name_, components_[0], box, box_to_world, medium_->components()[0].sigma_s[0]);
 }
 
 }  // namespace freepath

@@ -57,10 +57,10 @@ class SceneMedium {
   SceneMedium(std::string name, std::shared_ptr<const Medium> medium,
               std::vector<SceneMediumComponent> components);
   /// The same everywhere in a box, and nowhere else.
-  /// @param unit_to_world puts the unit cube where the medium is
+  /// @param box in a space of its own, which box_to_world puts into the world
   /// @param largest_sigma_t bounds what the spectra can be [1/m]
-  static SceneMedium homogeneous(std::string name, SceneMediumComponent component,
-                                 const Matrix4d& unit_to_world, float largest_sigma_t);
+  static SceneMedium homogeneous(std::string name, SceneMediumComponent component, const Box3d& box,
+                                 const Matrix4d& box_to_world, float largest_sigma_t);
   /// @throws Error if sizes do not fit the counts
   SceneMedium(std::string name, std::shared_ptr<const ColorVoxels> voxels);
 
@@ -89,7 +89,7 @@ class SceneMedium {
   /// Whether it is the same everywhere in its bounds.
   bool is_homogeneous() const { return is_homogeneous_; }
   /// The same in another box; only of a homogeneous one.
-  SceneMedium in_box(const Matrix4d& unit_to_world) const;
+  SceneMedium in_box(const Box3d& box, const Matrix4d& box_to_world) const;
 
  private:
   BoundMedium bind_colors(const SpectrumValues& spectra) const;

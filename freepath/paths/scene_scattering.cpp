@@ -7,8 +7,7 @@
 namespace freepath {
 
 bool SceneWavefront::sees_rgb(const ScenePath& path) const {
-  const bool needs_spectrum = records_spectra_;
-  if (!setup_.factory->sees_rgb() || path.is_coloured || needs_spectrum) return false;
+  if (!setup_.factory->sees_rgb() || path.is_coloured || records_spectra_) return false;
   const Channels& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
     if (c[i] != c[0]) return false;

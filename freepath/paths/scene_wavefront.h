@@ -52,6 +52,7 @@ class SceneWavefront {
   /// Traces one job.
   bool trace(const PathJob& job, Film& film);
 
+  /// Counts over all jobs that were finished; those of walks over dropped ones too.
   const PathWavefront::Counts& counts() const { return counts_; }
 
  private:

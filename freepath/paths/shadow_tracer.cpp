@@ -74,8 +74,8 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) 
   float begin = 0;
   PlaceId place = shadow.place;
   Vec3f origin = shadow.origin;
-  const auto is_end = [&](const RayPlace& place) {
-    return surfaces.is_end(origin, shadow.direction, place,
+  const auto is_end = [&](const RayPlace& met) {
+    return surfaces.is_end(origin, shadow.direction, met,
                            {shadow.end.distance - begin, shadow.end.target});
   };
   while (begin < shadow.end.distance) {

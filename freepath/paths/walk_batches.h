@@ -51,8 +51,6 @@ class WalkBatches {
   uint32_t find(const Walker& walker);
   static void resize(Batch& batch, std::size_t rays);
 
-  std::size_t capacity_;
-  bool weighted_;
   /// Where a walker's batch was last, by bits of its address: a guess.
   uint32_t& guess_of(const Walker& walker) {
     constexpr std::size_t kHash = 0x9E3779B97F4A7C15U;
@@ -60,6 +58,8 @@ class WalkBatches {
   }
 
   static constexpr int kGuessBits = 8;
+  std::size_t capacity_;
+  bool weighted_;
   std::array<uint32_t, 1U << kGuessBits> guesses_{};
   std::vector<Batch> batches_;  // of walkers, those beyond used_ to be used again
   uint32_t used_ = 0;

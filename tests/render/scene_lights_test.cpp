@@ -176,7 +176,8 @@ TEST(SceneLights, DrawsFollowTheDensityThatRaysFind) {
   }
 }
 
-/// As a path does it that may also find lights by itself: balance heuristic [Veach97].
+/// Draws are combined with directions of their own, as those of a path, by the balance heuristic
+/// [Veach97].
 TEST(SceneLights, DrawsAndEscapesTogetherEstimateTheIntegralOfWhatRaysSee) {
   constexpr float kByItself = 1 / (4 * std::numbers::pi_v<float>);
   const SpectrumValues values = spectra().table.in_rgb();

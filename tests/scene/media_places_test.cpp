@@ -46,7 +46,7 @@ TEST(MediaPlaces, AreWhatTheSetsSay) {
     numbers[ray] = places.cross(numbers[ray], shape, enters);
     ASSERT_EQ(numbers[ray], places.of(sets[ray])) << step;
     ASSERT_EQ(places.medium(numbers[ray]), factory.medium_of(sets[ray])) << step;
-    // What was entered often and never left: as paths do, begin anew now and then.
+    // Sets grow where rays enter without leaving: begin anew now and then, as paths do.
     if (any(16) == 0) {
       sets[ray] = MediaSet();
       numbers[ray] = places.of(MediaSet());

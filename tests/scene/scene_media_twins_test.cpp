@@ -98,10 +98,12 @@ TEST(SceneTwins, BoundaryThatNeedNotBeTracedIsAsOneThatIs) {
 }
 
 /// The boundary of fog between the corners of a box, of one shape for each list of corners.
-std::string fog_boundary(const std::vector<std::string>& triangles) {
+/// @param turn statements before them
+std::string fog_boundary(const std::vector<std::string>& triangles, const std::string& turn = "") {
   std::string text = homogeneous("m") +
                      "AttributeBegin\nTranslate 0 .2 0 Rotate 25 1 .3 .2 Scale .8 1 .7 "
-                     "Material \"interface\" MediumInterface \"m\" \"\"\n";
+                     "Material \"interface\" MediumInterface \"m\" \"\"\n" +
+                     turn;
   for (const std::string& indices : triangles) {
     text += R"(Shape "trianglemesh" "point3 P" [ -1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 )"
             R"(-1 -1 1 1 -1 1 -1 1 1 1 1 1 ] "integer indices" [ )" +
@@ -111,6 +113,9 @@ std::string fog_boundary(const std::vector<std::string>& triangles) {
 }
 const std::string kEightTriangles = "0 2 1 1 2 3 4 5 6 5 7 6 0 1 4 1 5 4 2 6 3 3 6 7 ";
 const std::string kFourTriangles = "0 4 2 2 4 6 1 3 5 3 7 5 ";
+/// The same with their corners the other way round.
+const std::string kEightTurned = "0 1 2 1 3 2 4 6 5 5 6 7 0 4 1 1 4 5 2 3 6 3 7 6 ";
+const std::string kFourTurned = "0 2 4 2 6 4 1 5 3 3 5 7 ";
 
 bool needs_no_boundary(const std::string& world) {
   Diagnostics diagnostics;
@@ -134,10 +139,31 @@ TEST(SceneTwins, FogFillsNothingButABox) {
         kEightTriangles + six + "3 5 5 ", kEightTriangles + six + "0 7 5 "}) {
     EXPECT_FALSE(needs_no_boundary(fog_boundary({triangles}))) << triangles;
   }
+  // Nor a box that has its outside within, wholly or in part: the fog is around it then.
+  for (const std::string& box :
+       {fog_boundary({kEightTurned + kFourTurned}),
+        fog_boundary({kEightTriangles + kFourTriangles}, "ReverseOrientation\n"),
+        fog_boundary({kEightTriangles + "0 2 4 2 4 6 1 3 5 3 7 5 "})}) {
+    EXPECT_FALSE(needs_no_boundary(box)) << box;
+  }
+  for (const std::string& box :
+       {fog_boundary({kEightTurned + kFourTurned}, "ReverseOrientation\n"),
+        fog_boundary({kEightTriangles + kFourTriangles}, "Scale -1 1 1\n")}) {
+    EXPECT_TRUE(needs_no_boundary(box)) << box;
+  }
+  expect_twins("inverse", stage(fog_boundary({kEightTurned + kFourTurned})),
+               stage(fog_boundary({kEightTurned, kFourTurned})));
   // Nor a box with something in it.
   const std::string ball =
       R"(AttributeBegin Material "diffuse" Shape "sphere" "float radius" 0.3 AttributeEnd)";
   EXPECT_FALSE(needs_no_boundary(fog_boundary({kEightTriangles + kFourTriangles}) + ball));
+}
+
+// Voxels that lie outside of a medium are not seen, though nothing but them may be near.
+TEST(SceneTwins, BoundaryThatIsTurnedInsideOutKeepsVoxelsOut) {
+  const std::string turned = "AttributeBegin\nReverseOrientation\n" + kFarBox + "AttributeEnd\n";
+  EXPECT_FALSE(needs_no_boundary(lumpy_grid() + turned));
+  EXPECT_TRUE(needs_no_boundary(lumpy_grid() + kFarBox));
 }
 
 /// A bubble around the camera, too small to be seen.

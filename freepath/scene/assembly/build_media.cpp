@@ -162,12 +162,7 @@ class MediumReader {
     const double reach =
         smallest > 0 ? std::min(kMeanFreePathsAround / smallest, kLargestReach * size) : size;
     const Box3d box(extent.min - Vec3d(reach + size), extent.max + Vec3d(reach + size));
-    Matrix4d unit_to_world;
-    unit_to_world.setScale(box.size());
-    unit_to_world[3][0] = box.min.x;
-    unit_to_world[3][1] = box.min.y;
-    unit_to_world[3][2] = box.min.z;
-    return SceneMedium::homogeneous(medium_.name, component, unit_to_world,
+    return SceneMedium::homogeneous(medium_.name, component, box, Matrix4d(),
                                     static_cast<float>(sigma_t));
   }
 

@@ -26,7 +26,7 @@ Box3d reach_of(const SceneMedium& medium) {
   return {box.min - half, box.max + half};
 }
 
-/// Which of a box's corners a place is, a bit for each axis; nothing if it is none.
+/// The corner of a box that a place is, a bit for each axis; nothing if it is none.
 std::optional<uint32_t> corner_of(const Box3d& box, const Vec3d& place) {
   uint32_t corner = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -39,14 +39,15 @@ std::optional<uint32_t> corner_of(const Box3d& box, const Vec3d& place) {
   return corner;
 }
 
-/// The box that a mesh of twelve triangles is, two of them on each side, in its own space.
-std::optional<Box3d> box_of(const TriangleMesh& mesh) {
+/// The box that a mesh of twelve triangles is, two of them on each side, all turned outward, in its
+/// own space.
+/// @param is_reversed the other side of each triangle is its outside
+std::optional<Box3d> box_of(const TriangleMesh& mesh, bool is_reversed) {
+  if (mesh.indices.size() != 36 || !mesh.normals.empty()) return std::nullopt;
   Box3d box;
   for (const int index : mesh.indices) box.extendBy(mesh.positions[index]);
-  if (mesh.indices.size() != 36 || !(box.size().x > 0 && box.size().y > 0 && box.size().z > 0)) {
-    return std::nullopt;
-  }
-  // Of each side, the corners that its triangles leave out.
+  if (!(box.size().x > 0 && box.size().y > 0 && box.size().z > 0)) return std::nullopt;
+  // The corners of each side that its triangles leave out.
   std::array<std::vector<uint32_t>, 6> left_out;
   for (std::size_t first = 0; first < mesh.indices.size(); first += 3) {
     std::array<uint32_t, 3> corners{};
@@ -59,6 +60,9 @@ std::optional<Box3d> box_of(const TriangleMesh& mesh) {
     const uint32_t high = corners[0] & corners[1] & corners[2];
     if (!std::has_single_bit(low | high)) return std::nullopt;  // on no side, or of no area
     const int axis = std::countr_zero(low | high);
+    const auto position = [&](std::size_t i) { return mesh.positions[mesh.indices[first + i]]; };
+    const Vec3d normal = (position(1) - position(0)).cross(position(2) - position(0));
+    if ((normal[axis] > 0) != ((high != 0) != is_reversed)) return std::nullopt;
     // The corners of a side cancel each other but for its own axis.
     left_out[2 * axis + (high != 0 ? 1 : 0)].push_back(corners[0] ^ corners[1] ^ corners[2] ^ high);
   }
@@ -69,14 +73,6 @@ std::optional<Box3d> box_of(const TriangleMesh& mesh) {
     if (corners.size() != 2 || ((corners[0] ^ corners[1]) & across) != across) return std::nullopt;
   }
   return box;
-}
-
-/// Puts the unit cube where a box of some space is.
-Matrix4d unit_to_box(const Box3d& box) {
-  Matrix4d matrix;
-  matrix.setScale(box.size());
-  for (int axis = 0; axis < 3; ++axis) matrix[3][axis] = box.min[axis];
-  return matrix;
 }
 
 /// How often a ray has to have entered each medium before it starts at a point, if it is never to
@@ -133,7 +129,10 @@ class Simplifier {
       const bool is_around = scene_.camera_media.count(id) > 0;
       if (boundary.empty() ? !is_around : !traced.is_inside(center, boundary)) continue;
       if (has_others(id, scene_.camera_media)) continue;
-      if (has_others(id, media_at(traced, scene_.shapes, scene_.media.size(), center))) continue;
+      const MediaSet inside = media_at(traced, scene_.shapes, scene_.media.size(), center);
+      if (has_others(id, inside)) continue;
+      // A boundary whose outside is turned inward has the medium around it.
+      if (!boundary.empty() && inside.count(id) == 0) continue;
       if (filling) scene_.media[id] = *filling;
       dissolve(id);
       return;
@@ -192,9 +191,10 @@ class Simplifier {
       only = &shape;
     }
     const auto* const mesh = only != nullptr ? std::get_if<TriangleMesh>(&only->geometry) : nullptr;
-    const std::optional<Box3d> box = mesh != nullptr ? box_of(*mesh) : std::nullopt;
+    if (mesh == nullptr) return std::nullopt;
+    const std::optional<Box3d> box = box_of(*mesh, only->reverse_orientation);
     if (!box) return std::nullopt;
-    return medium.in_box(unit_to_box(*box) * only->object_to_world);
+    return medium.in_box(*box, only->object_to_world);
   }
 
   std::vector<uint32_t> all_but(uint32_t shape) const {
