@@ -258,9 +258,9 @@ TEST_F(LayersTest, FindsADenoiserWhereTheEnvironmentSays) {
 
 // With the real library, where the environment names one.
 TEST_F(LayersTest, DenoisesByTheRealLibrary) {
-  if (getenv("FREEPATH_OIDN") == nullptr) {
-    GTEST_SKIP() << "FREEPATH_OIDN names no Open Image Denoise";
-  }
+  const char* const library = getenv("FREEPATH_TEST_OIDN");
+  if (library == nullptr) GTEST_SKIP() << "FREEPATH_TEST_OIDN names no Open Image Denoise";
+  setenv("FREEPATH_OIDN", library, 1);
   const auto noise = [&](const char* options) {
     const Outcome outcome =
         start(std::string("render ball.vdb --size 64x64 --spp 4 -o picture.exr ") + options);

@@ -200,6 +200,8 @@ ProgramTest::ProgramTest() {
   folder_ = fs::path(::testing::TempDir()) /
             ("freepath_program_" + std::string(test->name()) + std::to_string(getpid()));
   fs::create_directories(folder_);
+  // Where the tester's environment has a denoiser, the program would find it.
+  for (const char* name : {"FREEPATH_OIDN", "VIRTUAL_ENV"}) unsetenv(name);
 }
 
 ProgramTest::~ProgramTest() { fs::remove_all(folder_); }

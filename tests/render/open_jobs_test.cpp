@@ -13,8 +13,7 @@ namespace {
 
 TEST(OpenJobs, HaveCleanPlacesOfTheirOwn) {
   constexpr std::size_t kPathsPerSample = 3;
-  const Film film(PixelWindow::whole(4, 4), LayerSet::standard(),
-                  WavelengthBuckets{.count = 3});
+  const Film film(PixelWindow::whole(4, 4), LayerSet::standard(), WavelengthBuckets{.count = 3});
   OpenJobs jobs;
   jobs.begin(film, kPathsPerSample);
   std::mt19937 random(1);
