@@ -116,7 +116,9 @@ class RandomStream {
   /// (0,1), as uniform_from_words().
   constexpr float uniform() {
     const uint32_t word = bits();
-    return uniform_from_words(word, (word >> 1) < kFewDigits ? second() : 0);
+    if ((word >> 1) < kFewDigits) [[unlikely]]
+      return uniform_from_words(word, second());
+    return uniform_from_words(word, 0);
   }
   /// Exponential with mean 1: an optical depth, as exponential_from_words().
   constexpr float exponential() {

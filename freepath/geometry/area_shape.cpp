@@ -216,7 +216,7 @@ class AreaShape::QuadricKind : public Kind {
     for (int i = 0; i < kSteps; ++i) {
       for (int j = 0; j < kSteps; ++j) {
         const Vec3d p = traced_.quadric.sample((i + 0.5) / kSteps, (j + 0.5) / kSteps);
-        sum += area_ratio(traced_.quadric.describe(p).normal);
+        sum += area_ratio(traced_.quadric.describe(p, false).normal);
       }
     }
     area_ = traced_.quadric.area() * sum / (kSteps * kSteps);
@@ -227,9 +227,12 @@ class AreaShape::QuadricKind : public Kind {
       return std::abs(value) <= kSame * reference;
     };
     const double scale2 = scale_ * scale_;
-    is_cone_ = traced_.quadric.is_whole_sphere() && is_small(map.y.length() - scale_, scale_) &&
-               is_small(map.z.length() - scale_, scale_) && is_small(map.x.dot(map.y), scale2) &&
-               is_small(map.y.dot(map.z), scale2) && is_small(map.z.dot(map.x), scale2);
+    const bool is_similarity =
+        is_small(map.y.length() - scale_, scale_) && is_small(map.z.length() - scale_, scale_) &&
+        is_small(map.x.dot(map.y), scale2) && is_small(map.y.dot(map.z), scale2) &&
+        is_small(map.z.dot(map.x), scale2);
+    is_cone_ = traced_.quadric.is_whole_sphere() && is_similarity;
+    is_uniform_ = is_similarity || traced_.quadric.kind() == freepath::QuadricKind::kDisk;
   }
 
   uint32_t count() const override { return 1; }
@@ -298,7 +301,8 @@ class AreaShape::QuadricKind : public Kind {
     return volume_ratio_ * traced_.part_to_object.normal_back(object_normal).length();
   }
   double density(const Vec3d& object) const {
-    const double ratio = area_ratio(traced_.quadric.describe(object).normal);
+    if (is_uniform_) return 1 / area_;
+    const double ratio = area_ratio(traced_.quadric.describe(object, false).normal);
     return 1 / (traced_.quadric.area() * ratio);
   }
 
@@ -307,6 +311,7 @@ class AreaShape::QuadricKind : public Kind {
   double area_ = 0;
   double scale_ = 1;
   bool is_cone_ = false;
+  bool is_uniform_ = false;  // whether areas of both spaces have the same ratio everywhere
 };
 
 AreaShape::AreaShape(const SurfaceShape& shape, const Vec3d& origin) {

@@ -187,10 +187,7 @@ void Surfaces::Data::note_offset(const TracedShape& shape, const AffineTransform
 
 SurfaceQuery Surfaces::Data::query(QueryKind kind, const Vec3f& ray_origin, const Vec3f& direction,
                                    float t_min, double t_max) const {
-  SurfaceQuery query{};
-  rtcInitIntersectContext(&query.context);
-  query.kind = kind;
-  query.ray = {Vec3d(ray_origin), Vec3d(direction)};
+  SurfaceQuery query(kind, {Vec3d(ray_origin), Vec3d(direction)});
   query.t_min = t_min;
   query.t_max = t_max;
   query.rule = &rule;

@@ -311,9 +311,15 @@ TracedPart::TracedPart(std::span<const SurfaceShape> shapes, const Vec3d& part_o
     }
   }
   uint32_t geometry = 0;
-  for (const TracedTriangles& mesh : triangles) note(mesh, {geometry++, 0, mesh.count()});
-  for (const TracedPatches& mesh : patches) note(mesh, {geometry++, 0, mesh.count()});
-  for (uint32_t i = 0; i < quadrics.size(); ++i) note(quadrics[i], {geometry, i, 1});
+  const auto note = [&](const TracedShape& shape, uint32_t number, uint32_t first, uint32_t count) {
+    primitives_.push_back({shape.shape, shape.first_primitive, number, first, count});
+  };
+  for (const TracedTriangles& mesh : triangles) note(mesh, geometry++, 0, mesh.count());
+  for (const TracedPatches& mesh : patches) note(mesh, geometry++, 0, mesh.count());
+  for (uint32_t i = 0; i < quadrics.size(); ++i) note(quadrics[i], geometry, i, 1);
+  std::stable_sort(primitives_.begin(), primitives_.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.shape, a.from) < std::pair(b.shape, b.from);
+  });
   for (TracedTriangles& mesh : triangles) mesh.box = mesh.bounds(looked_at);
   for (TracedPatches& mesh : patches) mesh.box = mesh.bounds(looked_at);
   for (TracedQuadric& quadric : quadrics) quadric.box = quadric.bounds();
@@ -378,12 +384,15 @@ std::optional<TracedPart::Met> TracedPart::meet(const SurfaceKey& key, const Loc
 }
 
 std::optional<SurfaceKey> TracedPart::find_primitive(uint32_t shape, uint32_t primitive) const {
-  auto found = primitives_.upper_bound({shape, primitive});
+  const auto begins_after = [](const auto& at, const Primitives& primitives) {
+    return at < std::pair(primitives.shape, primitives.from);
+  };
+  const auto found = std::upper_bound(primitives_.begin(), primitives_.end(),
+                                      std::pair(shape, primitive), begins_after);
   if (found == primitives_.begin()) return std::nullopt;
-  --found;
-  const uint32_t number = primitive - found->first.second;
-  const Primitives& primitives = found->second;
-  if (found->first.first != shape || number >= primitives.count) return std::nullopt;
+  const Primitives& primitives = *(found - 1);
+  const uint32_t number = primitive - primitives.from;
+  if (primitives.shape != shape || number >= primitives.count) return std::nullopt;
   return SurfaceKey{kNoInstance, primitives.geometry, primitives.first + number, kAnyRoot};
 }
 

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,12 +65,16 @@ struct PlaceRule {
 
 /// One ray on its way. The first member is what Embree knows of it, and hands to the callbacks.
 struct SurfaceQuery {
+  SurfaceQuery(QueryKind query_kind, const LocalRay& world_ray) : kind(query_kind), ray(world_ray) {
+    rtcInitIntersectContext(&context);
+  }
+
   RTCIntersectContext context;
   QueryKind kind;
   LocalRay ray;  ///< In the world, relative to the origin of rays.
-  double t_min, t_max;
-  const PlaceRule* rule;
-  unsigned first_instance;  ///< Geometry number of the first instance.
+  double t_min = 0, t_max = 0;
+  const PlaceRule* rule = nullptr;
+  unsigned first_instance = 0;  ///< Geometry number of the first instance.
 
   RayPlace nearest = {std::numeric_limits<double>::infinity(), 0, {}};  ///< Of kNearest.
   bool is_tied = false;
@@ -139,14 +142,13 @@ class TracedPart {
   uint64_t looked_at = 0;  ///< Positions of meshes, for their boxes.
 
  private:
+  /// Those of a shape from a number on.
   struct Primitives {
+    uint32_t shape, from;
     uint32_t geometry, first, count;
   };
-  void note(const TracedShape& shape, const Primitives& primitives) {
-    primitives_[{shape.shape, shape.first_primitive}] = primitives;
-  }
 
-  std::map<std::pair<uint32_t, uint32_t>, Primitives> primitives_;  // by shape and first primitive
+  std::vector<Primitives> primitives_;  // by shape and number
 };
 
 /// A box around shapes that is not cut off by its rounding to floats.

@@ -27,9 +27,10 @@ constexpr uint32_t kFewestSets = 4;
 constexpr std::size_t kLargestBlock = std::size_t{256} << 20;  // [bytes]
 
 uint32_t reversed_bits(uint32_t word) {
-  uint32_t reversed = 0;
-  for (int bit = 0; bit < 32; ++bit) reversed |= (word >> bit & 1U) << (31 - bit);
-  return reversed;
+  word = (word & 0x55555555U) << 1 | (word >> 1 & 0x55555555U);
+  word = (word & 0x33333333U) << 2 | (word >> 2 & 0x33333333U);
+  word = (word & 0x0F0F0F0FU) << 4 | (word >> 4 & 0x0F0F0F0FU);
+  return __builtin_bswap32(word);
 }
 
 /// The index in binary, mirrored at the point: [0, 1).
