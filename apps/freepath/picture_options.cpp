@@ -49,8 +49,8 @@ void add_light_options(CLI::App& command, PictureOptions& o) {
 void add_camera_options(CLI::App& command, PictureOptions& o) {
   command
       .add_option("--color", o.color,
-                  "Of a scene: rgb, or spectral, --wavelengths of each sample [render: "
-                  "spectral, compare and plan: rgb]")
+                  "rgb, or spectral, --wavelengths of each sample [scenes: spectral by render, rgb "
+                  "by compare and plan; volumes: rgb]")
       ->group("Picture");
   command
       .add_option(
@@ -178,10 +178,10 @@ CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
 
 UpAxis read_up(const PictureOptions& options) { return parse_choice(options.up, "--up", kUpAxes); }
 
-ColorMode read_color(const PictureOptions& options) {
+ColorMode read_color(const PictureOptions& options, ColorMode usual) {
   constexpr std::array kColors{Choice<ColorMode>{"rgb", ColorMode::kRgb},
                                Choice<ColorMode>{"spectral", ColorMode::kSpectral}};
-  if (options.color.empty()) return ColorMode::kSpectral;
+  if (options.color.empty()) return usual;
   return parse_choice(options.color, "--color", kColors);
 }
 
@@ -245,18 +245,11 @@ void check_scene_options(const CLI::App& command, const PictureOptions& options)
     if (!looks_numeric(value)) continue;
     fail("--emission {} is for volumes: of a scene its file says that", value);
   }
-  if (command.count("--wavelengths") > 0 && read_color(options) != ColorMode::kSpectral) {
-    fail("--wavelengths are those of --color spectral, but here --color is {}", options.color);
-  }
 }
 
-void check_volume_options(const CLI::App& command, const PictureOptions& options) {
-  if (command.count("--color") > 0 && options.color != "rgb") {
-    fail("--color {}: volumes are rendered in rgb, scenes (.pbrt) in rgb or spectral",
-         options.color);
-  }
-  if (command.count("--wavelengths") > 0) {
-    fail("--wavelengths is for scenes (.pbrt): volumes are rendered in rgb");
+void check_wavelengths(const CLI::App& command, ColorMode color) {
+  if (command.count("--wavelengths") > 0 && color != ColorMode::kSpectral) {
+    fail("--wavelengths are those of --color spectral, but here --color is rgb");
   }
 }
 

@@ -51,7 +51,8 @@ LightOptions read_lights(const PictureOptions& options);
 /// @throws Error, too, for a picture that memory can't hold
 CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film);
 UpAxis read_up(const PictureOptions& options);
-ColorMode read_color(const PictureOptions& options);
+/// @param usual the mode where none is given
+ColorMode read_color(const PictureOptions& options, ColorMode usual);
 Interpolation read_interpolation(const std::string& text);
 /// All but samples, time, methods and interpolation, which have their standard values.
 RenderSettings read_run_settings(const PictureOptions& options);
@@ -68,7 +69,7 @@ std::string method_names(std::span<const MethodInfo> infos);
 bool is_scene(const PictureOptions& options);
 /// Refuses options that a scene's file has the say in.
 void check_scene_options(const CLI::App& command, const PictureOptions& options);
-/// Refuses those that only scenes have.
-void check_volume_options(const CLI::App& command, const PictureOptions& options);
+/// Refuses --wavelengths where there are none.
+void check_wavelengths(const CLI::App& command, ColorMode color);
 
 }  // namespace freepath::program

@@ -104,15 +104,18 @@ class PilotLine {
 };
 
 /// Tries sizes of super-voxels with the best tracker: each makes a medium of the same fields.
-void plan_super_voxels(const PlanOptions& options, const PictureSize& size, const Medium& medium,
-                       const PilotSettings& settings, const PilotLine& line, PicturePlan& plan) {
+void plan_super_voxels(const PlanOptions& options, const PictureSize& size,
+                       const VolumeMedium& volumes, const PilotSettings& settings,
+                       const PilotLine& line, PicturePlan& plan) {
+  const Medium& medium = *volumes.medium;
   plan.chosen_edge = medium.super_voxels().cell_size;
   plan.super_voxel_count = medium.super_voxel_count();
   std::vector<LoadedSubject> subjects;
   for (const int edge : kSuperVoxelSizes) {
     try {
-      subjects.push_back(subject_of_medium(
-          options.picture, std::make_shared<const Medium>(medium.components(), edge), size));
+      auto other = std::make_shared<const Medium>(medium.components(), edge);
+      subjects.push_back(
+          subject_of_medium(options.picture, {std::move(other), volumes.temperatures}, size));
       plan.edges.push_back(edge);
     } catch (const Error&) {
       // Too many super-voxels of that size.
@@ -136,8 +139,9 @@ void plan_super_voxels(const PlanOptions& options, const PictureSize& size, cons
 PicturePlan make_plan(const CLI::App& command, const PlanOptions& options) {
   const LoadedSubject whole = load_subject(command, options.picture);
   const PictureSize size = pilot_size(whole.film);
-  const LoadedSubject loaded = whole.medium ? subject_of_medium(options.picture, whole.medium, size)
-                                            : load_subject(command, options.picture, size);
+  const LoadedSubject loaded = whole.volumes
+                                   ? subject_of_medium(options.picture, *whole.volumes, size)
+                                   : load_subject(command, options.picture, size);
   PilotSettings settings;
   settings.time = options.time;
   settings.seed = options.picture.seed;
@@ -154,8 +158,8 @@ PicturePlan make_plan(const CLI::App& command, const PlanOptions& options) {
       run_pilots(loaded.subject, tracker_candidates(options), settings,
                  [&](double fraction) { return line.show("trackers", fraction); });
   plan.trackers.best = cheapest(plan.trackers.results);
-  if (whole.medium && plan.trackers.best) {
-    plan_super_voxels(options, size, *whole.medium, settings, line, plan);
+  if (whole.volumes && plan.trackers.best) {
+    plan_super_voxels(options, size, *whole.volumes, settings, line, plan);
   }
   return plan;
 }

@@ -115,7 +115,8 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
   if (given("--tracker")) plan.tracker = plan.settings.walk.tracker;
   if (given("--transmittance")) plan.transmittance = plan.settings.walk.transmittance;
   if (given("--interpolation")) plan.interpolation = plan.settings.walk.interpolation;
-  plan.color = read_color(options.picture);
+  plan.color = read_color(options.picture, ColorMode::kSpectral);
+  check_wavelengths(command, plan.color);
   render_scene_file(plan);
 }
 
@@ -123,7 +124,7 @@ void run(const CLI::App& command, const RenderOptions& options) {
   if (is_scene(options.picture)) return run_scene(command, options);
   if (options.outputs.empty())
     fail("-o, --output is required: the picture to write, .exr, .png, .pfm or .qoi");
-  check_volume_options(command, options.picture);
+  check_wavelengths(command, read_color(options.picture, ColorMode::kRgb));
   // All that can be wrong with the options is said before the first second of work.
   const std::vector<PictureFiles> pictures =
       plan_pictures(options.frames, {.frame = {},
@@ -133,14 +134,16 @@ void run(const CLI::App& command, const RenderOptions& options) {
   const UpAxis up = read_up(options.picture);
   const FilmPlan film = read_film_options(options.film);
   std::vector<std::string> warnings;
-  const RenderPlan plan{.settings = read_settings(options),
-                        .volumes = read_volumes(options.picture),
-                        .film = film,
-                        .camera = read_camera(options.picture, film),
-                        .up = up,
-                        .lights = make_lights(read_lights(options.picture), up, &warnings),
-                        .super_voxel = options.picture.super_voxel,
-                        .look = read_look(options, ViewTransform::kNeutral)};
+  const RenderPlan plan{
+      .settings = read_settings(options),
+      .volumes = read_volumes(options.picture),
+      .film = film,
+      .camera = read_camera(options.picture, film),
+      .up = up,
+      .surroundings = make_surroundings(read_lights(options.picture), up, &warnings),
+      .color = read_color(options.picture, ColorMode::kRgb),
+      .super_voxel = options.picture.super_voxel,
+      .look = read_look(options, ViewTransform::kNeutral)};
   for (const std::string& warning : warnings)
     fmt::print(stderr, "freepath: warning: {}\n", warning);
   if (options.frames.empty()) {

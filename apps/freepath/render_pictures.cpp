@@ -27,13 +27,13 @@ void check_not_empty(const RenderResult& result) {
 }
 
 /// The medium of a picture, with the times it took in the report.
-Medium load_medium(const RenderPlan& plan, const PictureFiles& files, RenderReport& report) {
+VolumeMedium load_medium(const RenderPlan& plan, const PictureFiles& files, RenderReport& report) {
   std::vector<VolumePlan> volume_plans = plan.volumes;
   for (std::size_t i = 0; i < volume_plans.size(); ++i) volume_plans[i].file = files.volumes[i];
   Stopwatch watch;
   std::vector<Volume> volumes = load_volumes(volume_plans, report.volumes);
   report.seconds_load = watch.lap();
-  Medium medium = make_medium(std::move(volumes), plan.super_voxel);
+  VolumeMedium medium = make_medium(std::move(volumes), plan.super_voxel);
   report.seconds_build = watch.lap();
   return medium;
 }
@@ -45,8 +45,8 @@ Camera frame_sequence(const RenderPlan& plan, std::span<const PictureFiles> fram
   const bool framed = !plan.camera.from;
   for (std::size_t i = 1; framed && is_empty(first) && i < frames.size(); ++i) {
     RenderReport ignored;
-    const Medium medium = load_medium(plan, frames[i], ignored);
-    if (!is_empty(medium)) return make_camera(medium, plan.camera, plan.up);
+    const VolumeMedium loaded = load_medium(plan, frames[i], ignored);
+    if (!is_empty(*loaded.medium)) return make_camera(*loaded.medium, plan.camera, plan.up);
   }
   return make_camera(first, plan.camera, plan.up);
 }
@@ -69,7 +69,7 @@ std::string settle_tracker(const std::string& tracker, const Medium& medium,
 /// Renders until it is done or the stop is wished, and writes what there is.
 /// @param tracker for the medium: that of the plan may be automatic
 RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
-                              const Medium& medium, const Camera& camera,
+                              const VolumeMedium& medium, const Camera& camera,
                               const std::string& tracker, const StopOnInterrupt& stop,
                               RenderReport& report) {
   report.settings = plan.settings;
@@ -83,8 +83,9 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   const auto display = show_passes(plan.film, files.outputs.front(), settings);
   const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
   const ProgressBar bar(std::size_t(window.width) * window.height, settings.time_limit);
+  const PathScene scene = make_volume_scene(medium, camera, plan.surroundings);
   RenderResult result =
-      render(medium, camera, plan.lights, settings, [&](const RenderProgress& progress) {
+      render_scene(scene, plan.color, settings, [&](const RenderProgress& progress) {
         bar.show(progress);
         return !stop.requested();
       });
@@ -132,10 +133,10 @@ void print_unfinished(const std::vector<PictureFiles>& frames, std::size_t done)
 
 void render_picture(const RenderPlan& plan, const PictureFiles& files) {
   RenderReport report;
-  const Medium medium = load_medium(plan, files, report);
+  const VolumeMedium medium = load_medium(plan, files, report);
   Stopwatch watch;
-  const Camera camera = make_camera(medium, plan.camera, plan.up);
-  const std::string tracker = settle_tracker(plan.settings.walk.tracker, medium);
+  const Camera camera = make_camera(*medium.medium, plan.camera, plan.up);
+  const std::string tracker = settle_tracker(plan.settings.walk.tracker, *medium.medium);
   report.seconds_build += watch.lap();
   const StopOnInterrupt stop;
   const RenderResult result = render_and_write(plan, files, medium, camera, tracker, stop, report);
@@ -151,10 +152,10 @@ void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& fram
     const PictureFiles& files = frames[i];
     try {
       RenderReport report;
-      const Medium medium = load_medium(plan, files, report);
+      const VolumeMedium medium = load_medium(plan, files, report);
       Stopwatch watch;
-      if (!camera) camera = frame_sequence(plan, std::span(frames).subspan(i), medium);
-      tracker = settle_tracker(plan.settings.walk.tracker, medium, tracker);
+      if (!camera) camera = frame_sequence(plan, std::span(frames).subspan(i), *medium.medium);
+      tracker = settle_tracker(plan.settings.walk.tracker, *medium.medium, tracker);
       report.seconds_build += watch.lap();
       if (stop.requested()) {
         if (i > 0) break;

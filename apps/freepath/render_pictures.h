@@ -17,7 +17,8 @@ struct RenderPlan {
   FilmPlan film;
   CameraOptions camera;
   UpAxis up = UpAxis::kY;
-  Lights lights;
+  Surroundings surroundings;
+  ColorMode color = ColorMode::kRgb;
   int super_voxel = 0;
   PictureLook look;
 };

@@ -10,7 +10,7 @@
 #include "apps/freepath/render_output.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
-#include "freepath/paths/scene_renderer.h"
+#include "freepath/paths/renderer.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
@@ -88,7 +88,7 @@ void render_scene_file(const ScenePlan& plan) {
   FilmPlan film = plan.film;
   if (!film.layers && built.picture.all_layers) film.layers = LayerSet::all();
   report.settings.layers = film.recorded();
-  const SceneCamera& camera = *built.scene.camera;
+  const Camera& camera = *built.scene.camera;
   const PixelWindow window = pixel_window(report.settings.crop, camera.width(), camera.height());
   check_memory(window, film, report.settings.buckets);
   PictureFilesAside aside(outputs, plan.stats);

@@ -10,7 +10,7 @@
 #include "apps/freepath/render_scene.h"
 #include "freepath/io/content_digest.h"
 #include "freepath/media/phase/parse_phase_function.h"
-#include "freepath/paths/scene_renderer.h"
+#include "freepath/paths/renderer.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
@@ -46,17 +46,32 @@ std::string digest_of(const CLI::App& command, const std::vector<std::filesystem
   return digest.hex();
 }
 
+/// Renders the subject by a scene.
+void set_renderers(Subject& subject, const std::shared_ptr<PathScene>& scene, ColorMode color) {
+  subject.render = [scene, color](const RenderSettings& settings,
+                                  const ProgressFunction& progress) {
+    return render_scene(*scene, color, settings, progress);
+  };
+  subject.render_reference = [scene, color](const RenderSettings& settings,
+                                            const ProgressFunction& progress) {
+    // Put back whatever happens.
+    const auto put_back = [&](const SampleKind* kind) { scene->samples = *kind; };
+    const SampleKind own = std::exchange(scene->samples, SampleKind::kIndependent);
+    const std::unique_ptr<const SampleKind, decltype(put_back)> guard(&own, put_back);
+    return render_scene(*scene, color, settings, progress);
+  };
+}
+
 LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions& options,
                                   const PictureSize& size) {
-  check_volume_options(command, options);
+  check_wavelengths(command, read_color(options, ColorMode::kRgb));
   // All that can be wrong with the options is said before a file is read.
   read_up(options);
   read_camera(options, FilmPlan());
   const LightOptions lights = read_lights(options);
   std::vector<VolumeReport> report;
-  auto medium = std::make_shared<const Medium>(
-      make_medium(load_volumes(read_volumes(options), report), options.super_voxel));
-  LoadedSubject loaded = subject_of_medium(options, std::move(medium), size);
+  LoadedSubject loaded = subject_of_medium(
+      options, make_medium(load_volumes(read_volumes(options), report), options.super_voxel), size);
   std::vector<std::filesystem::path> files(options.volumes.files.begin(),
                                            options.volumes.files.end());
   if (const auto* image = std::get_if<std::string>(&lights.environment)) {
@@ -77,8 +92,9 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   plan.settings = read_run_settings(options);
   // Trackers are compared, which three channels do as well as wavelengths, with less noise of
   // colour.
-  const bool is_rgb = options.color.empty() && command.count("--wavelengths") == 0;
-  plan.color = is_rgb ? ColorMode::kRgb : read_color(options);
+  plan.color = read_color(
+      options, command.count("--wavelengths") > 0 ? ColorMode::kSpectral : ColorMode::kRgb);
+  check_wavelengths(command, plan.color);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
   BuildOptions build{.invalid = read_invalid(options.volumes)};
   if (size) {
@@ -95,7 +111,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   LoadedSubject loaded;
   loaded.settings = settle(plan, *built);
   loaded.settings.buckets = {};  // colours are compared
-  const SceneCamera& camera = *built->scene.camera;
+  const Camera& camera = *built->scene.camera;
   const PixelWindow window = pixel_window(loaded.settings.crop, camera.width(), camera.height());
   check_memory(window, FilmPlan());
   loaded.film = {camera.width(), camera.height()};
@@ -111,50 +127,38 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   subject.chromaticities = RgbChromaticities{space.primaries(), space.white()};
   subject.width = window.width;
   subject.height = window.height;
-  subject.render = [built, color = plan.color](const RenderSettings& settings,
-                                               const ProgressFunction& progress) {
-    return render_scene(built->scene, color, settings, progress);
-  };
-  subject.render_reference = [built, color = plan.color](const RenderSettings& settings,
-                                                         const ProgressFunction& progress) {
-    // Put back whatever happens.
-    const auto put_back = [&](const SampleKind* kind) { built->scene.samples = *kind; };
-    const SampleKind own = std::exchange(built->scene.samples, SampleKind::kIndependent);
-    const std::unique_ptr<const SampleKind, decltype(put_back)> guard(&own, put_back);
-    return render_scene(built->scene, color, settings, progress);
-  };
+  set_renderers(subject, std::shared_ptr<PathScene>(built, &built->scene), plan.color);
   return loaded;
 }
 
 }  // namespace
 
-LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<const Medium> medium,
+LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volumes,
                                 const PictureSize& size) {
   const UpAxis up = read_up(options);
   CameraOptions camera_options = read_camera(options, FilmPlan());
   camera_options.width = size.width;
   camera_options.height = size.height;
-  const auto camera = std::make_shared<const Camera>(make_camera(*medium, camera_options, up));
   std::vector<std::string> warnings;
-  const auto lights =
-      std::make_shared<const Lights>(make_lights(read_lights(options), up, &warnings));
+  const Surroundings surroundings = make_surroundings(read_lights(options), up, &warnings);
   for (const std::string& warning : warnings)
     fmt::print(stderr, "freepath: warning: {}\n", warning);
   LoadedSubject loaded;
   loaded.settings = read_run_settings(options);
   loaded.film = size;
-  const TrackerChoice choice = choose_tracker(*medium);
+  const Medium& medium = *volumes.medium;
+  const TrackerChoice choice = choose_tracker(medium);
   loaded.automatic_tracker = choice.tracker;
   loaded.reason = choice.reason;
   Subject& subject = loaded.subject;
   subject.name = names_of(options.volumes.files);
-  subject.width = camera->width();
-  subject.height = camera->height();
-  subject.render = [medium, camera, lights](const RenderSettings& settings,
-                                            const ProgressFunction& progress) {
-    return render(*medium, *camera, *lights, settings, progress);
-  };
-  loaded.medium = std::move(medium);
+  subject.width = size.width;
+  subject.height = size.height;
+  set_renderers(subject,
+                std::make_shared<PathScene>(make_volume_scene(
+                    volumes, make_camera(medium, camera_options, up), surroundings)),
+                read_color(options, ColorMode::kRgb));
+  loaded.volumes = std::move(volumes);
   return loaded;
 }
 

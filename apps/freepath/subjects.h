@@ -10,7 +10,6 @@
 
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
-#include "freepath/media/medium.h"
 #include "freepath/study/subject.h"
 
 namespace freepath::program {
@@ -21,7 +20,7 @@ struct LoadedSubject {
   RenderSettings settings;  ///< All but samples, time and methods.
   PictureSize film;         ///< The whole picture's size, of which a scene may crop a part.
   /// Of bare volumes: their medium, for methods to be chosen by.
-  std::shared_ptr<const Medium> medium;
+  std::optional<VolumeMedium> volumes;
   std::string automatic_tracker;  ///< What `auto` stands for here,
   std::string reason;             ///< and why, in one line.
 };
@@ -33,7 +32,7 @@ LoadedSubject load_subject(const CLI::App& command, const PictureOptions& option
                            const std::optional<PictureSize>& size = {});
 
 /// The same of volumes, with another medium and in another size. It has no digest.
-LoadedSubject subject_of_medium(const PictureOptions& options, std::shared_ptr<const Medium> medium,
+LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volumes,
                                 const PictureSize& size);
 
 }  // namespace freepath::program

@@ -14,13 +14,6 @@ bool is_legal(const Spectrum& s) { return is_finite(s) && s.x >= 0 && s.y >= 0 &
 
 }  // namespace
 
-ConstantEnvironment::ConstantEnvironment(const Spectrum& radiance) : radiance_(radiance) {
-  if (!is_legal(radiance)) {
-    fail("the radiance of the environment is {},{},{}; it must be finite and not negative",
-         radiance.x, radiance.y, radiance.z);
-  }
-}
-
 ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::string& name)
     : width_(image.width), height_(image.height), up_(up) {
   if (width_ < 1 || height_ < 1) fail("{}: the environment image is empty", name);

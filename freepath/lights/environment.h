@@ -1,5 +1,5 @@
 #pragma once
-/// @file Light from everywhere around: constant, or an image in latitude-longitude form.
+/// @file Light from everywhere around: an image in latitude-longitude form.
 ///
 /// Directions are unit vectors from the scene towards the light [world]: the direction of travel of
 /// a ray that escapes. All that is called per path is inline, pure and in single precision.
@@ -24,21 +24,6 @@ namespace freepath {
 struct LightValue {
   Spectrum radiance{0.0F};
   float pdf = 0;  ///< [1/sr]
-};
-
-/// The same radiance from everywhere.
-class ConstantEnvironment {
- public:
-  /// @throws Error for a radiance that is negative or not finite
-  explicit ConstantEnvironment(const Spectrum& radiance);
-
-  LightValue evaluate(const Vec3f&) const { return {radiance_, kUniformSpherePdf}; }
-  Vec3f sample(float u0, float u1) const { return sample_sphere(u0, u1); }
-  /// Integral of the radiance over all directions.
-  Spectrum fluence() const { return radiance_ * (4.0F * std::numbers::pi_v<float>); }
-
- private:
-  Spectrum radiance_;
 };
 
 /// A point of a latitude-longitude image; both coordinates run from 0 to 1, (0, 0) is the upper

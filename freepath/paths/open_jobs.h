@@ -7,7 +7,7 @@
 
 #include "freepath/base/channels.h"
 #include "freepath/paths/layer_recorder.h"
-#include "freepath/paths/path_wavefront.h"
+#include "freepath/paths/path_job.h"
 #include "freepath/sensors/film.h"
 
 namespace freepath {
@@ -36,7 +36,7 @@ class OpenJobs {
     std::size_t paths = 0;
     std::size_t paths_left = 0;  ///< Those that have not ended.
     bool is_open = false;
-    PathWavefront::Counts counts;  ///< But for walks.
+    PathCounts counts;  ///< But for walks.
   };
   Job& operator[](uint32_t number) { return jobs_[number]; }
   const Job& operator[](uint32_t number) const { return jobs_[number]; }

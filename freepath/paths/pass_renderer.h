@@ -35,15 +35,14 @@ inline constexpr uint32_t kMaxSamplesPerPass = 256;
 inline constexpr double kSecondsPerPass = 2;
 inline constexpr double kSecondsBetweenReports = 0.1;
 
-/// Renders pass after pass into a film, by one Wavefront for each thread.
-template <class Wavefront>
+/// Renders pass after pass into a film, by one wavefront for each thread.
 class PassRenderer {
  public:
   /// Called before a pass over samples [first, first + count) of every pixel. It gives the fewest
   /// pixels of a job, where many are best traced together.
   using Prepare = std::function<std::size_t(uint32_t first, uint32_t count)>;
 
-  PassRenderer(std::function<Wavefront()> make_wavefront, const RenderSettings& settings,
+  PassRenderer(std::function<PathWavefront()> make_wavefront, const RenderSettings& settings,
                const ProgressFunction& progress, Film& film, Prepare prepare = {})
       : prepare_(std::move(prepare)),
         settings_(settings),
@@ -79,9 +78,9 @@ class PassRenderer {
 
   bool stop_is_wished() const { return deadline_.stop_is_wished(); }
   double seconds() const { return seconds_since(start_); }
-  PathWavefront::Counts counts() {
-    PathWavefront::Counts sum;
-    for (const Wavefront& wavefront : wavefronts_) sum.merge(wavefront.counts());
+  PathCounts counts() {
+    PathCounts sum;
+    for (const PathWavefront& wavefront : wavefronts_) sum.merge(wavefront.counts());
     return sum;
   }
 
@@ -115,7 +114,7 @@ class PassRenderer {
   /// One thread's part of a pass: takes the next pixels until there are none.
   void work(uint32_t samples, std::atomic<std::size_t>& next_pixel) {
     const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
-    Wavefront& wavefront = wavefronts_.local();
+    PathWavefront& wavefront = wavefronts_.local();
     const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
     std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
     const std::size_t fewest =
@@ -173,7 +172,7 @@ class PassRenderer {
   const ProgressFunction& progress_;
   Film& film_;
   Threads threads_;
-  tbb::enumerable_thread_specific<Wavefront> wavefronts_;
+  tbb::enumerable_thread_specific<PathWavefront> wavefronts_;
   double start_;
   Deadline deadline_;
   std::atomic<bool> over_ = false;
@@ -184,20 +183,19 @@ class PassRenderer {
 };
 
 /// What came of it, all but the film.
-template <class Wavefront>
-void finish_result(PassRenderer<Wavefront>& passes, const RenderSettings& settings,
-                   RenderResult& result) {
+inline void finish_result(PassRenderer& passes, const RenderSettings& settings,
+                          RenderResult& result) {
   const Film::SampleCounts samples = result.film.sample_counts();
   result.samples = samples.fewest;
   result.most_samples = samples.most;
   result.pixels_without_samples = samples.pixels_without;
   result.interrupted = passes.stop_is_wished() && result.samples != settings.samples;
   result.seconds = passes.seconds();
-  const PathWavefront::Counts counts = passes.counts();
+  const PathCounts counts = passes.counts();
   result.paths = counts.paths;
   result.overflows = counts.overflows;
   result.cut_paths = counts.cut_paths;
-  result.cut_share = static_cast<double>(counts.cut_weight) * PathWavefront::Counts::kWeightUnit /
+  result.cut_share = static_cast<double>(counts.cut_weight) * PathCounts::kWeightUnit /
                      static_cast<double>(std::max<uint64_t>(counts.paths, 1));
   result.free_paths = counts.free_paths;
   result.shadow_rays = counts.shadow_rays;

@@ -14,9 +14,9 @@
 #include "freepath/materials/textures/texture_table.h"
 #include "freepath/paths/media_set.h"
 #include "freepath/paths/scene_medium.h"
+#include "freepath/sensors/camera.h"
 #include "freepath/sensors/pixel_filter.h"
 #include "freepath/sensors/sample_sequence.h"
-#include "freepath/sensors/scene_camera.h"
 #include "freepath/spectra/spectrum_table.h"
 
 namespace freepath {
@@ -59,7 +59,7 @@ struct PathScene {
   std::vector<PathShape> shapes;
   std::optional<Surfaces> surfaces;  ///< None where there are no shapes.
   std::optional<SceneLights> lights;
-  std::optional<SceneCamera> camera;
+  std::optional<Camera> camera;
   MediaSet camera_media;
   float exposure_scale = 1;  ///< What the film multiplies radiance by.
   /// From R, G, B of the light to those of the film, before they are scaled: the balance of white.

@@ -1,20 +1,21 @@
 #pragma once
-/// @file A wavefront of paths: all paths of a stretch of pixels, traced together.
+/// @file A wavefront of paths through a scene of media, surfaces and lights.
 
-#include <algorithm>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "freepath/base/random.h"
-#include "freepath/lights/lights.h"
-#include "freepath/media/phase/phase_function.h"
-#include "freepath/paths/layer_recorder.h"
-#include "freepath/sensors/camera.h"
+#include "freepath/paths/emission_tracer.h"
+#include "freepath/paths/open_jobs.h"
+#include "freepath/paths/path_colors.h"
+#include "freepath/paths/path_job.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/paths/path_state.h"
+#include "freepath/paths/shadow_tracer.h"
+#include "freepath/paths/walk_batches.h"
 #include "freepath/sensors/film.h"
-#include "freepath/transport/walker.h"
 
 namespace freepath {
 
@@ -23,159 +24,162 @@ inline constexpr float kLargestThroughput = 1e28F;
 
 /// What all paths of a picture share.
 struct PathSetup {
-  const Medium* medium = nullptr;
-  const Camera* camera = nullptr;
-  const Lights* lights = nullptr;
-  /// What rays are relative to [world]; that of the walkers' settings.
-  Vec3d origin{0, 0, 0};
-  /// One walker that carries all channels, or one for each channel (a path each).
-  std::vector<Walker> walkers;
-  Absorption absorption = Absorption::kWeighted;
+  const PathScene* scene = nullptr;
+  const ColorFactory* factory = nullptr;
   uint64_t seed = 0;
-  uint32_t max_scatterings = UINT32_MAX;
+  Absorption absorption = Absorption::kWeighted;
+  uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
   /// Russian roulette is played where no channel's throughput reaches this.
   float roulette_threshold = 0.25F;
+  /// Whether scatterings in emissive media also look for their light along lines of its own; where
+  /// nothing is said, if little of the medium glows.
+  std::optional<bool> samples_emission = {};
   std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
+  /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
+  std::vector<std::shared_ptr<const PathColors>> colors;
+  uint32_t first_set = 0;
 };
 
-/// A rectangle of work: `pixels` pixels of the film from `first_pixel` on (row-major), samples
-/// [first_sample, first_sample + samples) of each.
-struct PathJob {
-  std::size_t first_pixel = 0;
-  std::size_t pixels = 0;
-  uint32_t first_sample = 0;
-  uint32_t samples = 0;
-
-  std::size_t sample_count() const { return pixels * samples; }
-};
-
-/// Where a wavefront gets its jobs from.
-struct PathJobSource {
-  /// The next job, none of which has a pixel of another that is under way; nothing if there is
-  /// none.
-  std::function<std::optional<PathJob>()> next;
-  /// Told of each that has been added to the film.
-  std::function<void(const PathJob&)> finished = [](const PathJob&) {};
-  /// Asked before every flight; once it is true the jobs under way are dropped whole: nothing of
-  /// them is added to the film.
-  std::function<bool()> stop = [] { return false; };
-  /// Whether a job may begin before the one before it has ended, so that lanes stay full.
-  bool overlaps = true;
-};
-
-/// Traces paths through a medium lit from outside and from within: walk, scatter with next-event
+/// Traces paths through a scene: to the next surface or collision, scatter with next-event
 /// estimation and multiple importance sampling [Veach97, balance heuristic], Russian roulette,
-/// until every path has ended. A path that ends makes room for the next, so that the lanes stay
-/// full. One wavefront for each thread; its memory is used again.
+/// until every path has ended. One wavefront for each thread; its memory is used again.
 class PathWavefront {
  public:
   explicit PathWavefront(const PathSetup& setup);
+  PathWavefront(const PathWavefront&) = delete;  // its parts refer to each other
+  PathWavefront& operator=(const PathWavefront&) = delete;
 
-  /// Traces jobs, one after the other, as long as there are any.
+  /// Traces jobs as long as there are any, and adds the samples of each to the film when its last
+  /// path has ended, each pixel's in the order of their numbers.
   /// @return false if they were stopped
-  bool trace(const PathJobSource& jobs, Film& film) {
-    while (const std::optional<PathJob> job = jobs.next()) {
-      if (!trace(*job, film, jobs.stop)) return false;
-      jobs.finished(*job);
-    }
-    return true;
-  }
-  /// Traces a job and adds its samples to the film, each pixel's in the order of their numbers.
-  /// @param stop asked before every flight of the wavefront; once it is true the job is dropped
-  ///   whole: nothing is added to the film or to the counts
-  /// @return whether the job was finished
-  bool trace(const PathJob& job, Film& film, const std::function<bool()>& stop = {});
+  bool trace(const PathJobSource& jobs, Film& film);
+  /// Traces one job.
+  bool trace(const PathJob& job, Film& film);
 
-  /// Counts over all jobs that were finished.
-  struct Counts {
-    WalkStatistics free_paths;   ///< Of the tracker.
-    WalkStatistics shadow_rays;  ///< Of the transmittance estimator.
-    uint64_t paths = 0;
-    /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
-    /// not to be trusted. Only rates that are no bound can do that.
-    uint64_t overflows = 0;
-    /// Paths that the limit of scatterings ended, and the weight that they still had: the mean of
-    /// their channels, in units of kWeightUnit, so that sums don't depend on their order.
-    uint64_t cut_paths = 0, cut_weight = 0;
-    static constexpr double kWeightUnit = 0x1p-20;
-
-    /// Counts a path that the limit ends.
-    void cut(float weight) {
-      constexpr double kMost = 1e6;
-      ++cut_paths;
-      cut_weight += static_cast<uint64_t>(std::clamp(double{weight}, 0.0, kMost) / kWeightUnit);
-    }
-
-    void merge(const Counts& other) {
-      free_paths.merge(other.free_paths);
-      shadow_rays.merge(other.shadow_rays);
-      paths += other.paths;
-      overflows += other.overflows;
-      cut_paths += other.cut_paths;
-      cut_weight += other.cut_weight;
-    }
-  };
-  const Counts& counts() const { return counts_; }
+  /// Counts over all jobs that were finished; those of walks over dropped ones too.
+  const PathCounts& counts() const { return counts_; }
 
  private:
-  /// A path in flight. Its ray stands in the same slot of rays_.
-  struct Path {
-    Spectrum throughput{0.0F};
-    Spectrum density{1.0F};  ///< FlightStream::density of the flights so far.
-    Spectrum radiance{0.0F};
-    float phase_pdf;  ///< Density with which the direction was drawn [1/sr].
-    uint32_t bounce;  ///< Scatterings so far.
-    uint32_t result;  ///< Place among the job's samples.
-    uint64_t lookups;
-    float alpha;
-    Spectrum albedo{0.0F};
-    float depth;
-    float depth_weight;
-  };
-  /// Light on its way from a scattering to the lights.
-  struct ShadowPath {
-    std::size_t slot;
-    Spectrum radiance;  ///< What arrives if nothing is in between.
-  };
+  /// Starts paths in all slots that are free, as far as there are jobs.
+  void start_paths(const PathJobSource& jobs, const Film& film);
+  /// Fills order_.
+  void set_order(const PathJob& job);
+  /// @param number of the newest job's paths
+  void start_path(std::size_t number, ScenePath& path);
+  /// Takes in the paths that have ended, and the jobs that have with them.
+  void end_paths(const PathJobSource& jobs, Film& film);
+  /// @param pixel of the picture
+  const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
+    return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
+  }
+  /// Sends all paths on: those in vacuum at once, others by their walkers.
+  void fly();
+  void fly_in_vacuum(std::size_t slot);
+  void take_flight(std::size_t slot, const Walker& walker, std::size_t i, bool weighted);
+  /// Whether the surface at which a ray ends has to be known before it flies.
+  bool needs_surfaces_first(const ScenePath& path) const;
+  void find_surface(ScenePath& path) const;
 
-  /// @return whether it came to the end
-  bool trace_channel(const PathJob& job, int channel, const std::function<bool()>& stop);
-  void start_path(const PathJob& job, std::size_t number, std::size_t slot, int channel);
-  /// Takes in what became of a path's flight; false if the path has ended.
-  bool advance(std::size_t slot);
-  /// Tells spectral trackers the throughputs of the paths that they are to continue.
-  void bring_weights(std::size_t active);
-  /// Adds what a flight has collected, and weights the path with it.
-  void take_weights(Path& path, std::size_t slot);
-  void escape(Path& path, const Vec3f& direction);
-  bool scatter(Path& path, std::size_t slot);
-  void sample_light(const Path& path, std::size_t slot, const Vec3f& position,
-                    const Vec3f& direction, const PhaseFunction& phase, RandomStream& random);
-  void record_first_event(Path& path, std::size_t slot) const;
-  /// How much the first event of a path counts for means over events: its probability in the mean
-  /// over the channels that the path carries, over that with which it came about.
-  float depth_weight(std::size_t slot, const Spectrum& albedo) const;
-  void record_layers(const Path& path, std::size_t slot);
-  void finish(const Path& path, int channel);
-  void trace_shadows();
+  /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
+  bool sees_rgb(const ScenePath& path) const;
+  const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
+  /// A path's throughput in the channels of these spectra.
+  static Channels light_throughput(const ScenePath& path, bool in_rgb);
+  void escape(ScenePath& path);
+  /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
+  /// opaque one is never passed over, nor a light; ties_ are the others.
+  std::optional<SurfaceHit> choose_surface(const ScenePath& path);
+  /// The first surface at the place where a ray ends that its alpha lets be there; ties_ are the
+  /// others that are.
+  std::optional<SurfaceHit> first_there(const ScenePath& path);
+  /// Which of several surfaces at a place is met: the highest, and of equal ones the nearest.
+  int rank(uint32_t shape) const;
+  void meet_surface(std::size_t slot);
+  void cross_boundary(ScenePath& path, const SurfaceHit& hit);
+  /// Goes on where the surface at which a ray ends is not there.
+  void pass_hole(ScenePath& path);
+  void scatter_at_surface(std::size_t slot, const SurfaceHit& hit);
+  /// Where a new ray starts at a surface, and the media that are there.
+  struct Departure {
+    Vec3f origin;
+    PlaceId place;
+  };
+  Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction);
+  void set_place(ScenePath& path, PlaceId place) const {
+    path.place = place;
+    path.medium = places_.medium(place);
+  }
+  ShadowEnd shadow_end(const LightDraw& light) const {
+    if (!light.area || light.area->light >= shapes_of_lights_.size()) return {light.distance};
+    const std::optional<uint32_t>& shape = shapes_of_lights_[light.area->light];
+    if (!shape) return {light.distance};
+    return {light.distance, ShadowEnd::Target{*shape, light.area->primitive}};
+  }
+  /// A light for a position; what its own alpha leaves of it.
+  LightDraw draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                       RandomStream& random) const;
+  /// Whether a path goes on at a surface as if there were none.
+  bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
+  void scatter_in_medium(std::size_t slot, float t, std::size_t component);
+  /// Null where the flights of paths find all that a medium emits.
+  const EmissionGuide* guide_of(MediumId medium) const {
+    const bool wanted = setup_.samples_emission.value_or(!setup_.factory->glow_is_spread(medium));
+    return wanted ? setup_.factory->guide(medium) : nullptr;
+  }
+  void draw_emission(std::size_t slot, const EmissionGuide& guide, const Vec3f& position,
+                     const PhaseFunction& phase, RandomStream& random);
+  /// Whether the limit of scatterings ends a path.
+  bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
+  /// @param albedo of what would scatter it
+  void count_cut(const ScenePath& path, const Channels& albedo);
+  /// By Russian roulette.
+  /// @return false if the path has ended
+  bool survives(ScenePath& path, RandomStream& random) const;
+  void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
+  /// The same in a new direction.
+  void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
+  /// The medium of the scene, and its component, in which a collision takes place.
+  static MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component);
+  /// The mean over the channels that a path carries.
+  static float carried_mean(const ScenePath& path, const Channels& values);
+  /// Records the first event of a path.
+  /// @param weight its probability over that with which it came about, in each channel
+  void record_event(ScenePath& path, float t, const Channels& weight, const Channels& albedo,
+                    const Vec3f& normal);
+  void record_medium_event(ScenePath& path, float t, const MediumWalkers::Origin& scatterer);
+  /// R, G, B on the film of both parts of a radiance.
+  Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
+  Spectrum transmittance_of(const ScenePath& path) const;
+  void finish(ScenePath& path);
+  void add_to_film(const OpenJobs::Job& done, Film& film) const;
+  /// @param sample of the job
+  void add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const;
 
   const PathSetup& setup_;
-  bool emits_;                         // whether the medium does
-  bool carries_one_channel_ = false;   // whether the paths in flight do
-  std::vector<PhaseFunction> phases_;  // of the components
-  std::vector<Spectrum> albedos_;      // of the components
-  std::vector<Path> paths_in_flight_;
-  RayStream rays_;
+  const PathScene& scene_;
+  MediaPlaces places_;
+  PlaceId camera_place_ = 0;
+  bool has_alpha_ = false;                                 // whether a shape of the scene has
+  std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
+  std::vector<TiedSurface> ties_;                          // of the surface that a path meets
+  std::vector<ScenePath> paths_;
+  std::size_t active_ = 0;
+  WalkBatches batches_;
   FlightStream flights_;
-  RayStream shadow_rays_;
-  FlightStream shadow_flights_;
-  std::vector<ShadowPath> shadows_;
-  std::vector<PathSample> results_;
-  LayerRecorder layers_;            // of the results
-  PixelWindow window_;              // of the film at work
-  const Walker* walker_ = nullptr;  // of the channel at work
-  Counts job_counts_;
-  Counts counts_;
+  ShadowTracer shadows_;
+  EmissionTracer emissions_;
+  OpenJobs jobs_;
+  uint32_t newest_ = 0;        // job, whose paths start now
+  std::size_t next_path_ = 0;  // of those
+  std::size_t paths_of_newest_ = 0;
+  bool has_more_jobs_ = false;
+  /// The newest job's samples (pixel · samples + sample) in the order in which they start.
+  std::vector<uint32_t> order_;
+  std::vector<uint32_t> sets_, begin_of_set_;     // for that order
+  const PathColors* colors_of_sample_ = nullptr;  // of the sample whose paths start now
+  bool records_spectra_ = false;
+  PixelWindow window_;  // of the film at work
+  PathCounts counts_;
 };
 
 }  // namespace freepath

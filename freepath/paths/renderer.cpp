@@ -1,59 +1,96 @@
 #include "freepath/paths/renderer.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/paths/pass_renderer.h"
-#include "freepath/transport/weight_growth.h"
+#include "freepath/paths/path_wavefront.h"
 
 namespace freepath {
 namespace {
 
-PathSetup make_setup(const Medium& medium, const Camera& camera, const Lights& lights,
-                     const RenderSettings& settings) {
-  PathSetup setup;
-  setup.medium = &medium;
-  setup.camera = &camera;
-  setup.lights = &lights;
-  setup.absorption = settings.walk.absorption;
-  setup.seed = settings.walk.seed;
-  setup.max_scatterings = settings.max_scatterings;
-  setup.slots = std::max<std::size_t>(settings.batch, 1);
-  setup.origin = medium.world_bounds().center();
-  WalkSettings walk = settings.walk;
-  walk.origin = setup.origin;
-  if (shares_paths(medium, settings.walk)) {
-    setup.walkers.emplace_back(medium, walk);
-  } else {
-    for (int channel = 0; channel < kChannels; ++channel) {
-      setup.walkers.emplace_back(medium, walk, channel);
-    }
-  }
-  return setup;
+/// Paths of a set of wavelengths in a job whose sets need walkers of their own: their flights are
+/// walked apart, and fewer would leave lanes idle.
+constexpr std::size_t kPathsOfSet = 1024;
+/// But so many jobs there shall be, for all threads to have some.
+constexpr std::size_t kFewestJobs = 16;
+
+/// Pixels of a job of a picture that has so many.
+std::size_t fewest_pixels(const ColorFactory& factory, std::size_t pixels, uint32_t samples) {
+  if (!factory.depends_on_wavelengths()) return 1;
+  const std::size_t wanted = kPathsOfSet * factory.sets_per_block() / samples;
+  return std::max(kPathsOfSet, std::min(wanted, pixels / kFewestJobs));
 }
 
-/// @throws Error where weights of paths would grow at every scattering
-void check_weights(const Medium& medium, const RenderSettings& settings) {
-  if (settings.studies_unbounded_weights) return;
-  const int channel = shares_paths(medium, settings.walk) ? Walker::kAllChannels : 0;
-  require_bounded_weights(weight_growth(channels_of(medium, channel), settings.walk),
-                          settings.max_scatterings);
-  require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
+/// Makes the colours of the sets that samples may have; those that are there already stay.
+void prepare_colors(PathSetup& setup, uint32_t first_sample, uint32_t samples) {
+  const uint32_t block = setup.factory->sets_per_block();
+  const uint32_t first = first_sample / block * block;
+  const uint32_t count = (first_sample + samples - 1) / block * block + block - first;
+  std::vector<std::shared_ptr<const PathColors>> colors(count);
+  for (std::size_t i = 0; i < setup.colors.size(); ++i) {
+    const std::size_t set = setup.first_set + i;
+    if (set >= first && set < std::size_t{first} + count) colors[set - first] = setup.colors[i];
+  }
+  setup.colors = std::move(colors);
+  setup.first_set = first;
+  tbb::parallel_for(0U, count, [&](uint32_t i) {
+    if (!setup.colors[i]) setup.colors[i] = setup.factory->colors_of_set(first + i);
+  });
 }
 
 }  // namespace
 
-RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
-                    const RenderSettings& settings, const ProgressFunction& progress) {
+std::string standard_tracker(const PathScene& scene) {
+  const SpectrumValues rgb = scene.spectra->in_rgb();
+  const bool grey = std::all_of(
+      scene.media.begin(), scene.media.end(),
+      [&](const SceneMedium& medium) { return medium.bind(rgb).channels.has_grey_extinction(); });
+  return grey || !scene.surfaces ? "delta" : "spectral";
+}
+
+RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
+                          const ProgressFunction& progress) {
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
   }
-  check_weights(medium, settings);
-  const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
-  RenderResult result{.film = Film(window, settings.layers), .free_paths = {}, .shadow_rays = {}};
-  const PathSetup setup = make_setup(medium, camera, lights, settings);
-  PassRenderer<PathWavefront> passes([&] { return PathWavefront(setup); }, settings, progress,
-                                     result.film);
+  const PixelWindow window =
+      pixel_window(settings.crop, scene.camera->width(), scene.camera->height());
+  const bool spectral = mode == ColorMode::kSpectral;
+  RenderResult result{
+      .film = Film(window, settings.layers, spectral ? settings.buckets : WavelengthBuckets{}),
+      .free_paths = {},
+      .shadow_rays = {}};
+  const RgbColorSpace& space = scene.spectra->space();
+  const RgbChromaticities chromaticities{space.primaries(), space.white()};
+  if (!are_same(chromaticities, RgbChromaticities())) {
+    result.film.set_chromaticities(chromaticities);
+  }
+  const ColorFactory factory(scene, mode, settings.wavelengths, settings.walk);
+  if (!settings.studies_unbounded_weights) {
+    require_bounded_weights(factory.weight_growth(), settings.max_scatterings);
+    if (!scene.media.empty()) {
+      require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
+    }
+  }
+  PathSetup setup;
+  setup.scene = &scene;
+  setup.factory = &factory;
+  setup.seed = settings.walk.seed;
+  setup.absorption = settings.walk.absorption;
+  setup.max_scatterings = settings.max_scatterings;
+  setup.slots = std::max<std::size_t>(settings.batch, 1);
+  const std::size_t pixels = static_cast<std::size_t>(window.width) * window.height;
+  const auto prepare = [&](uint32_t first, uint32_t count) {
+    prepare_colors(setup, first, count);
+    return fewest_pixels(factory, pixels, count);
+  };
+  PassRenderer passes([&] { return PathWavefront(setup); }, settings, progress, result.film,
+                      prepare);
   passes.run();
   finish_result(passes, settings, result);
   return result;

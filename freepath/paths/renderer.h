@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
-#include "freepath/paths/path_wavefront.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/sensors/film.h"
+#include "freepath/transport/walker.h"
 
 namespace freepath {
 
@@ -38,7 +41,7 @@ struct RenderSettings {
   /// Called between passes, by the thread that renders, with what there is.
   std::function<void(const Film&)> on_pass = {};
   std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
-  WalkSettings walk;         ///< Its origin is chosen by the renderer: the middle of the medium.
+  WalkSettings walk;         ///< Its origin is that of the scene.
 };
 
 /// What is done so far.
@@ -79,19 +82,24 @@ struct RenderResult {
 /// isn't complete within a second, others at once.
 using ProgressFunction = std::function<bool(const RenderProgress&)>;
 
-/// Renders a medium lit from outside and from within, without a limit to the number of scatterings.
-/// The picture depends on medium, camera, lights, walk settings and sample count alone.
+/// The tracker for a scene where nobody names one. A path for each channel has less variance in
+/// clouds of colour, one path for all costs less where surfaces take most of the time.
+std::string standard_tracker(const PathScene& scene);
+
+/// Renders a scene. The picture depends on scene, colour mode, walk settings and sample count
+/// alone.
 ///
-/// A medium whose extinction is grey is traced with one path for all channels, else with one path
-/// for each channel of every sample.
+/// Media whose extinction is grey are traced with one path for all channels, and so are others by
+/// trackers that carry several; else each channel of every sample has a path.
 ///
 /// Where a pass is broken off, jobs that are not finished are dropped whole, so that a sample is
 /// the same as in any other picture. How many samples a pixel has then depends on the time that
 /// its paths took; dropping those unfinished, rather than waiting for them, keeps the bias of the
 /// mean small [Glynn90]. A pixel without samples has no mean.
+/// @param settings the origin of its walk is that of the scene
 /// @throws Error for methods that do not exist or whose weights would grow at every scattering
 ///   (weight_growth.h), and (an internal error) if a sample is not finite
-RenderResult render(const Medium& medium, const Camera& camera, const Lights& lights,
-                    const RenderSettings& settings, const ProgressFunction& progress = {});
+RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
+                          const ProgressFunction& progress = {});
 
 }  // namespace freepath

@@ -78,7 +78,11 @@ BoundMedium SceneMedium::bind(const SpectrumValues& spectra) const {
       const auto fields = tabulate_radiance(
           *component.temperature, [&](double kelvin) { return thermal_channels(kelvin, spectra); });
       std::copy(fields.begin(), fields.end(), target.radiance.begin());
-      target.emission.fill(fields[0].field ? component.radiance_scale : 0);
+      const Channels factor =
+          component.temperature_factor ? spectra[*component.temperature_factor] : Channels(1.0F);
+      for (int c = 0; c < spectra.channels(); ++c) {
+        target.emission[c] = fields[0].field ? component.radiance_scale * factor[c] : 0;
+      }
     }
   }
   return bound;

@@ -28,6 +28,7 @@ struct SceneMediumComponent {
   float radiance_scale = 1;
   std::shared_ptr<const Field> radiance_field;
   std::optional<TemperatureEmission> temperature;  ///< In place of radiance.
+  std::optional<SpectrumId> temperature_factor;    ///< Of that, too; none: 1.
   PhaseFunction phase = {};
 };
 

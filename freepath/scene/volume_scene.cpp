@@ -10,9 +10,11 @@
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
+#include "freepath/lights/light_descriptions.h"
 #include "freepath/lights/sky.h"
 #include "freepath/lights/thermal_radiance.h"
 #include "freepath/media/walk_space.h"
+#include "freepath/sensors/framing.h"
 #include "freepath/spectra/rgb_color_space.h"
 
 namespace freepath {
@@ -39,10 +41,8 @@ void set_coefficients(const OpticalProperties& optics, Component& component) {
   component.sigma_s *= optics.density_scale;
 }
 
-/// Black bodies of a volume's temperatures, in R, G and B (sRGB).
-std::array<RadianceField, kChannels> glow_of(const Volume& volume) {
-  const TemperatureEmission emission{volume.temperature, volume.optics.temperature_scale,
-                                     volume.optics.temperature_offset};
+/// Black bodies of temperatures, in R, G and B (sRGB).
+std::array<RadianceField, kChannels> glow_of(const TemperatureEmission& emission) {
   const RgbColorSpace& space = rgb_color_space("srgb");
   const auto fields = tabulate_radiance(emission, [&](double kelvin) {
     const Vec3d rgb = space.from_xyz(thermal_xyz(kelvin));
@@ -54,15 +54,19 @@ std::array<RadianceField, kChannels> glow_of(const Volume& volume) {
 }
 
 /// The components that a volume contributes.
-void add_components(Volume volume, std::vector<Component>& components) {
+void add_components(Volume volume, std::vector<Component>& components,
+                    std::vector<std::optional<TemperatureEmission>>& temperatures) {
   const std::size_t densities = volume.densities.size();
   if (densities != 1 && densities != kChannels) {
     fail("a volume has one density, or three for R, G and B, not {}", densities);
   }
   std::array<RadianceField, kChannels> glow;
   Spectrum emission = volume.optics.emission.value_or(Spectrum(0.0F));
+  std::optional<TemperatureEmission> temperature;
   if (volume.temperature) {
-    glow = glow_of(volume);
+    temperature = {volume.temperature, volume.optics.temperature_scale,
+                   volume.optics.temperature_offset};
+    glow = glow_of(*temperature);
     const Spectrum scale = volume.optics.emission.value_or(Spectrum(1.0F));
     emission = glow[0].field ? scale : Spectrum(0.0F);
   }
@@ -80,6 +84,7 @@ void add_components(Volume volume, std::vector<Component>& components) {
       component.sigma_s *= only;
     }
     components.push_back(std::move(component));
+    temperatures.push_back(temperature);
   }
 }
 
@@ -167,23 +172,68 @@ void check_optical_depth(const Medium& medium, const WalkPart& medium_part) {
   }
 }
 
+void check_radiance(const Spectrum& radiance) {
+  if (is_finite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0) return;
+  fail("the radiance of the environment is {},{},{}; it must be finite and not negative",
+       radiance.x, radiance.y, radiance.z);
+}
+
+Vec3d vector_of(const Spectrum& rgb) { return {rgb.x, rgb.y, rgb.z}; }
+
+/// A coefficient of any size. Equal channels are the same at all wavelengths.
+SpectralDistribution coefficient(const Spectrum& rgb, const RgbColorSpace& space) {
+  if (rgb.x == rgb.y && rgb.y == rgb.z) return {double{rgb.x}};
+  return RgbSpectrum::unbounded(vector_of(rgb), space);
+}
+
+std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, SpectrumTable& table) {
+  const auto add = [&](const Spectrum& rgb) {
+    return table.add(coefficient(rgb, table.space()), SpectrumRole::kReflectance);
+  };
+  std::vector<SceneMediumComponent> spectra;
+  for (const Component& component : medium.medium->components()) {
+    const std::size_t number = spectra.size();
+    SceneMediumComponent& target = spectra.emplace_back();
+    target.sigma_a = add(component.sigma_a);
+    target.sigma_s = add(component.sigma_s);
+    target.phase = component.phase;
+    if (number < medium.temperatures.size() && medium.temperatures[number]) {
+      target.temperature = medium.temperatures[number];
+      target.temperature_factor = add(component.emission);
+    } else if (component.radiance[0].field) {
+      fail(
+          "component {}: its radiance is a field without temperatures, of which no spectrum is "
+          "known",
+          number);
+    } else if (largest(component.emission) > 0) {
+      target.radiance =
+          table.add(RgbSpectrum::illuminant(vector_of(component.emission), table.space()),
+                    SpectrumRole::kIlluminant);
+    }
+  }
+  return spectra;
+}
+
 }  // namespace
 
-Medium make_medium(std::vector<Volume> volumes, int super_voxel) {
+VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel) {
   std::vector<Field*> fields;
   for (Volume& volume : volumes) {
     for (Field& field : volume.densities) fields.push_back(&field);
   }
   if (!fields.empty()) share_layout(fields);
   std::vector<Component> components;
-  for (Volume& volume : volumes) add_components(std::move(volume), components);
+  VolumeMedium result;
+  for (Volume& volume : volumes) {
+    add_components(std::move(volume), components, result.temperatures);
+  }
   if (components.size() > Medium::kMaxComponents) {
     fail("the volumes have {} densities, more than {}: an RGB density counts as three",
          components.size(), Medium::kMaxComponents);
   }
-  Medium medium(std::move(components), super_voxel);
-  for (const WalkPart& part : medium.parts()) check_optical_depth(medium, part);
-  return medium;
+  result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
+  for (const WalkPart& part : result.medium->parts()) check_optical_depth(*result.medium, part);
+  return result;
 }
 
 Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up) {
@@ -211,19 +261,48 @@ bool is_empty(const Medium& medium) {
          std::all_of(maxima.begin(), maxima.end(), [](float most) { return most == 0; });
 }
 
-Lights make_lights(const LightOptions& options, UpAxis up, std::vector<std::string>* warnings) {
-  std::optional<Sun> sun;
-  if (options.sun) sun.emplace(options.sun_parameters, up);
+Surroundings make_surroundings(const LightOptions& options, UpAxis up,
+                               std::vector<std::string>* warnings) {
+  Surroundings result;
+  if (options.sun) result.sun.emplace(options.sun_parameters, up);
   if (const auto* radiance = std::get_if<Spectrum>(&options.environment)) {
-    return Lights(ConstantEnvironment(*radiance), sun);
-  }
-  if (const auto* file = std::get_if<std::string>(&options.environment)) {
+    check_radiance(*radiance);
+    result.environment = *radiance;
+  } else if (const auto* file = std::get_if<std::string>(&options.environment)) {
     Image image = read_image(*file);
     std::string warning = mend_invalid_pixels(image, *file, options.invalid);
     if (!warning.empty() && warnings != nullptr) warnings->push_back(std::move(warning));
-    return Lights(ImageEnvironment(image, up, *file), sun);
+    result.environment = ImageEnvironment(image, up, *file);
+  } else {
+    result.environment = make_sky(options.sun_parameters, up);
   }
-  return Lights(make_sky(options.sun_parameters, up), sun);
+  return result;
+}
+
+PathScene make_volume_scene(const VolumeMedium& medium, const Camera& camera,
+                            const Surroundings& surroundings) {
+  PathScene scene;
+  scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space("srgb"));
+  scene.media.emplace_back("volume", medium.medium, spectra_of(medium, *scene.spectra));
+  scene.is_clear = {true};
+  scene.camera_media.add(0, 1);
+  scene.camera = camera;
+  scene.origin = medium.medium->world_bounds().center();
+  SceneLightsDescription lights;
+  lights.origin = scene.origin;
+  if (const auto* radiance = std::get_if<Spectrum>(&surroundings.environment)) {
+    check_radiance(*radiance);
+    const RgbSpectrum light = RgbSpectrum::illuminant(vector_of(*radiance), scene.spectra->space());
+    lights.lights.emplace_back(
+        ConstantInfiniteLight{.name = "the environment",
+                              .radiance = scene.spectra->add(light, SpectrumRole::kIlluminant)});
+  } else {
+    lights.lights.emplace_back(
+        EnvironmentLight{.environment = std::get<ImageEnvironment>(surroundings.environment)});
+  }
+  if (surroundings.sun) lights.lights.emplace_back(SunLight{.sun = *surroundings.sun});
+  scene.lights.emplace(std::move(lights), *scene.spectra);
+  return scene;
 }
 
 }  // namespace freepath

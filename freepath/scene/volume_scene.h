@@ -1,5 +1,5 @@
 #pragma once
-/// @file The scene around bare volumes: their medium, a camera that sees all of it, sun and sky.
+/// @file Bare volumes as a scene: their medium, a camera that sees all of it, sun and sky.
 
 #include <memory>
 #include <optional>
@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "freepath/io/volume.h"
-#include "freepath/lights/lights.h"
+#include "freepath/lights/environment.h"
+#include "freepath/lights/sun.h"
+#include "freepath/lights/thermal_radiance.h"
 #include "freepath/media/medium.h"
+#include "freepath/paths/path_scene.h"
 #include "freepath/sensors/camera.h"
 
 namespace freepath {
@@ -58,20 +61,41 @@ struct CameraOptions {
   std::optional<Vec3d> at;    ///< [world]
 };
 
+/// Volumes as one medium.
+struct VolumeMedium {
+  std::shared_ptr<const Medium> medium;  ///< With coefficients in R, G and B (linear sRGB).
+  /// Of its components, in their order, those that glow as black bodies; what the components emit
+  /// multiplies that. May be shorter.
+  std::vector<std::optional<TemperatureEmission>> temperatures = {};
+};
+
 /// The volumes' densities as components of one medium, in their order; they may overlap anyhow.
 /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
 /// @throws Error for coefficients out of range, another number of densities in a volume than one or
 ///   three, and as Medium
-Medium make_medium(std::vector<Volume> volumes, int super_voxel);
+VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel);
 
 /// @param medium what to frame where the options name no position
 /// @throws Error as Camera and frame_points
 Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up);
 
+/// What shines on a bare volume from everywhere around.
+struct Surroundings {
+  /// The same radiance from everywhere, in linear sRGB, or an image.
+  std::variant<Spectrum, ImageEnvironment> environment = Spectrum(0.0F);
+  std::optional<Sun> sun = {};
+};
+
 /// @param warnings gets what there is to say about the image, if not null
-/// @throws Error as Lights, its environments and the image reader
-Lights make_lights(const LightOptions& options, UpAxis up,
-                   std::vector<std::string>* warnings = nullptr);
+/// @throws Error as the environments and the image reader
+Surroundings make_surroundings(const LightOptions& options, UpAxis up,
+                               std::vector<std::string>* warnings = nullptr);
+
+/// A scene of a medium that fills its own bounds, and nothing else. Colours become spectra as those
+/// of scenes do, and are as given where R, G and B are rendered.
+/// @throws Error for a radiance that is negative or not finite
+PathScene make_volume_scene(const VolumeMedium& medium, const Camera& camera,
+                            const Surroundings& surroundings);
 
 /// Whether there is nothing in a medium: its densities are 0 everywhere.
 bool is_empty(const Medium& medium);

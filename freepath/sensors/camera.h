@@ -1,10 +1,13 @@
 #pragma once
-/// @file The perspective camera, and where to put it for a bare volume.
+/// @file Cameras: perspective, orthographic and spherical, by what they look at or as the scene
+/// language has them (pbrt-v4).
+///
+/// Camera space has x to the right, y up and z ahead; it is left-handed. A transform to the world
+/// that keeps the handedness therefore shows the world mirrored, as it does in pbrt.
 
-#include <cmath>
-#include <span>
+#include <optional>
+#include <variant>
 
-#include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -27,51 +30,111 @@ struct CameraRay {
 /// @throws Error for one that is not between 0 and 180
 double half_extent(double fov);
 
-/// A pinhole camera with square pixels.
+/// The part of the screen that the film shows. The screen is 2 wide in its shorter direction, x to
+/// the right and y up; a window whose limits are swapped shows the picture mirrored.
+struct ScreenWindow {
+  double x_min, x_max;
+  double y_min, y_max;
+};
+
+/// A thin lens; with a radius of 0 everything is in focus.
+struct Lens {
+  double radius = 0;            ///< [camera space]
+  double focal_distance = 1e6;  ///< Depth z of the plane in focus [camera space].
+};
+
+/// Rays through one point, or through a lens around it.
+struct PerspectiveCamera {
+  double fov = 90;  ///< Angle of view of the screen's shorter direction [degrees], in (0, 180).
+  std::optional<double> frame_aspect_ratio = {};   ///< Width / height; otherwise the film's.
+  std::optional<ScreenWindow> screen_window = {};  ///< Otherwise the whole screen.
+  Lens lens = {};
+};
+
+/// Parallel rays; the screen lies in the plane z = 0 of camera space, in its units.
+/// @note With a lens, rays leave from around the film's point, so that a point in focus is where it
+///   is without a lens. pbrt-v4 has them leave from around the camera's origin.
+struct OrthographicCamera {
+  std::optional<double> frame_aspect_ratio = {};   ///< Width / height; otherwise the film's.
+  std::optional<ScreenWindow> screen_window = {};  ///< Otherwise the whole screen.
+  Lens lens = {};
+};
+
+/// How the film is laid around a spherical camera.
+enum class SphericalMapping {
+  kEqualArea,       ///< The octahedral map of [Clarberg08]: each pixel has the same solid angle.
+  kEquirectangular  ///< Longitude from x to z to the right, latitude downwards from y.
+};
+
+/// Everything around a point.
+struct SphericalCamera {
+  SphericalMapping mapping = SphericalMapping::kEqualArea;
+};
+
+using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera>;
+
+/// A camera. Immutable; threads share it.
 class Camera {
  public:
-  /// @param width,height size of the film [pixels]
-  /// @throws Error if `from` and `at` are the same or beyond 1e30, `up` is parallel to the line of
-  ///   sight, the angle of view is not in (0, 180), the film is empty, or a number is not finite
+  /// @param world_from_camera affine; points are rows
+  /// @param width,height size of the whole film [pixels]
+  /// @throws Error if the film is empty, the transform is not affine, has no inverse or puts the
+  ///   camera beyond 1e30, the angle of view is not in (0, 180), the aspect ratio is not positive,
+  ///   the screen window is empty, the lens' radius is negative, the distance of the plane in focus
+  ///   is not positive, or a number is not finite
+  Camera(const CameraModel& model, const Matrix4d& world_from_camera, int width, int height);
+  /// A pinhole with square pixels.
+  /// @throws Error, too, if `from` and `at` are the same or beyond 1e30, or `up` is parallel to the
+  ///   line of sight
   Camera(const View& view, int width, int height);
 
-  /// The ray through a point of the film. (0, 0) is the upper left corner of the film, x runs to
-  /// the right, y down, the centre of the first pixel is (0.5, 0.5) [pixels].
-  CameraRay ray(float film_x, float film_y) const {
-    const Vec3f direction = corner_ + step_x_ * film_x + step_y_ * film_y;
-    return {origin_, direction * (1.0F / std::sqrt(direction.length2()))};
-  }
+  /// The ray through a point of the film and a point of the lens. (0, 0) is the upper left corner
+  /// of the whole film, x runs to the right, y down, the centre of the first pixel is (0.5, 0.5)
+  /// [pixels]. Points a little off the film are meaningful too: filters reach there.
+  /// @param lens_u,lens_v uniform in [0, 1), for a point uniform on the lens; its middle otherwise
+  CameraRay ray(float film_x, float film_y, float lens_u = 0.5F, float lens_v = 0.5F) const;
+
+  /// Whether rays depend on the point of the lens.
+  bool has_lens() const;
 
   int width() const { return width_; }
   int height() const { return height_; }
 
  private:
-  Vec3d origin_;
-  Vec3f corner_;  // direction through the upper left corner, 1 deep along the line of sight
-  Vec3f step_x_, step_y_;  // change of the direction from one pixel to the next
+  /// The film stands at depth 1 of a perspective camera, and at depth 0 of an orthographic one.
+  /// Vectors are images of those of camera space; directions are over the length of the image of
+  /// depth 1 [world].
+  struct Projective {
+    Projective(const PerspectiveCamera& camera, const Matrix4d& matrix, int width, int height);
+    Projective(const OrthographicCamera& camera, const Matrix4d& matrix, int width, int height);
+    CameraRay ray(float film_x, float film_y, float lens_u, float lens_v) const;
+
+    bool is_parallel;
+    bool has_lens;
+    float focus;   // 1 / distance of the plane in focus [1/world]
+    Vec3d origin;  // of the camera
+    Vec3f ahead;
+    Vec3d corner;          // of the film, from its point on the axis
+    Vec3d step_x, step_y;  // from one pixel to the next
+    Vec3f lens_x, lens_y;  // radii of the lens
+
+   private:
+    Projective(const ScreenWindow& screen, double screen_scale, const Lens& lens, bool parallel,
+               const Matrix4d& matrix, int width, int height);
+  };
+  struct Spherical {
+    CameraRay ray(float film_x, float film_y) const;
+
+    SphericalMapping mapping;
+    Vec3d origin;
+    Vec3f right, up, ahead;
+    float per_width, per_height;
+  };
+  using Rays = std::variant<Projective, Spherical>;
+  static Rays make_rays(const CameraModel& model, const Matrix4d& matrix, int width, int height);
+
   int width_, height_;
+  Rays rays_;
 };
-
-/// The line of sight that frame_box chooses: the camera stands in the south-south-east (the
-/// azimuths are those of sky_direction) and a little below the middle of the box, so that it looks
-/// up to it as one does to a cloud.
-inline constexpr double kFramingAzimuth = 150;    // [degrees]
-inline constexpr double kFramingElevation = -12;  // [degrees]
-
-/// A view of all the points, as close as that allows but for a margin of 5 % of the picture.
-/// @param points what to show [world]
-/// @param fov vertical angle of view [degrees]
-/// @param aspect width / height of the film
-/// @throws Error for no points, points that are all one or infinite, an angle not in (0, 180), an
-///   aspect that is not positive
-View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect);
-
-/// A view of the whole box, as close as that allows but for a margin of 5 % of the picture.
-/// @param bounds what to show [world]
-/// @param fov vertical angle of view [degrees]
-/// @param aspect width / height of the film
-/// @throws Error for an empty or infinite box, an angle not in (0, 180), an aspect that is not
-///   positive
-View frame_box(const Box3d& bounds, UpAxis up, double fov, double aspect);
 
 }  // namespace freepath

@@ -1,4 +1,5 @@
 #include "freepath/sensors/camera.h"
+#include "freepath/sensors/framing.h"
 
 #include <gtest/gtest.h>
 

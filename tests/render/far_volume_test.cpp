@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "freepath/paths/renderer.h"
+#include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {
@@ -28,7 +28,7 @@ Medium lump(const Matrix4d& index_to_world) {
 }
 
 Image picture(const Medium& medium, const View& view) {
-  const Lights lights(ConstantEnvironment(Spectrum(0.5F)), Sun({.elevation = 50}, UpAxis::kY));
+  const Surroundings lights{Spectrum(0.5F), Sun({.elevation = 50}, UpAxis::kY)};
   RenderSettings settings;
   settings.samples = 64;
   return render(medium, Camera(view, kSize, kSize), lights, settings).film.to_image();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "freepath/paths/renderer.h"
+#include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {
@@ -38,7 +38,7 @@ Camera camera_at(const Vec3d& from) {
   return {{from, Vec3d(0), Vec3d(0, 1, 0), 35}, kWidth, kHeight};
 }
 
-Lights environment() { return Lights(ConstantEnvironment(Spectrum(0.5F, 1.0F, 1.5F))); }
+Surroundings environment() { return {Spectrum(0.5F, 1.0F, 1.5F)}; }
 
 RenderSettings sampled(uint32_t samples) {
   RenderSettings settings;

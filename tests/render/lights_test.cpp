@@ -1,6 +1,6 @@
-// Environment, sky and sun, alone and as the mixture that the integrator samples.
+// Environment, sky and sun, alone and as the mixture that the integrator draws of.
 
-#include "freepath/lights/lights.h"
+#include "freepath/lights/scene_lights.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/lights/sky.h"
+#include "freepath/spectra/rgb_color_space.h"
 #include "tests/render/expect_near.h"
 #include "tests/statistics.h"
 
@@ -42,6 +43,51 @@ Image rough_image() {
   image.values[3 * 16 + 11] = 40;
   return image;
 }
+
+/// A direction drawn towards the lights.
+struct LightSample {
+  Vec3f direction;
+  Spectrum radiance;
+  float pdf;
+};
+
+/// An environment and perhaps a sun, as the lights of a scene in R, G and B.
+class Lights {
+ public:
+  explicit Lights(const std::optional<ImageEnvironment>& environment,
+                  const std::optional<Sun>& sun = {})
+      : table_(rgb_color_space("srgb")),
+        values_(table_.in_rgb()),
+        sun_(sun),
+        lights_(description(environment, sun), table_) {}
+
+  LightValue evaluate(const Vec3f& direction) const {
+    const LightSeen seen = lights_.escape(Vec3f(0), direction, values_);
+    return {colour(seen.radiance), seen.pdf};
+  }
+  float pdf(const Vec3f& direction) const { return evaluate(direction).pdf; }
+  LightSample sample(float u0, float u1, float u2) const {
+    const LightDraw draw = lights_.sample(Vec3f(0), values_, u0, u1, u2);
+    return {draw.direction, colour(draw.radiance), draw.pdf};
+  }
+  bool is_drawn() const { return lights_.is_drawn(); }
+  const std::optional<Sun>& sun() const { return sun_; }
+
+ private:
+  static Spectrum colour(const Channels& rgb) { return {rgb[0], rgb[1], rgb[2]}; }
+  static SceneLightsDescription description(const std::optional<ImageEnvironment>& environment,
+                                            const std::optional<Sun>& sun) {
+    SceneLightsDescription lights;
+    if (environment) lights.lights.emplace_back(EnvironmentLight{.environment = *environment});
+    if (sun) lights.lights.emplace_back(SunLight{.sun = *sun});
+    return lights;
+  }
+
+  SpectrumTable table_;
+  SpectrumValues values_;
+  std::optional<Sun> sun_;
+  SceneLights lights_;
+};
 
 /// Integral over all directions, by the midpoint rule in azimuth and height. The rows of an image
 /// are split evenly if `rows` is a multiple of theirs.
@@ -142,12 +188,9 @@ std::vector<SamplingCase> all_lights() {
   const ImageEnvironment rough(rough_image(), UpAxis::kY, "rough");
   const ImageEnvironment black(grey_image(8, 4, [](int, int) { return 0.0F; }), UpAxis::kY, "b");
   const ImageEnvironment one(grey_image(1, 1, [](int, int) { return 2.0F; }), UpAxis::kY, "1");
-  return {{"constant", Lights(ConstantEnvironment(Spectrum(0.5F)))},
-          {"constant and sun", Lights(ConstantEnvironment(Spectrum(0.5F)), sun)},
-          {"sun alone", Lights(ConstantEnvironment(Spectrum(0)), sun)},
+  return {{"sun alone", Lights({}, sun)},
           {"image", Lights(rough)},
           {"image and sun", Lights(rough, sun)},
-          {"black image", Lights(black)},
           {"black image and sun", Lights(black, sun)},
           {"image of one pixel", Lights(one)},
           {"sky", Lights(make_sky({.elevation = 30, .azimuth = 200}, UpAxis::kY))},
@@ -192,18 +235,11 @@ TEST(Lights, ExtremesOfTheUniformNumbersAreDirections) {
   }
 }
 
-TEST(Lights, KnowsWhenThereIsNoLight) {
+TEST(Lights, AreNotDrawnWhereTheyAreBlack) {
   const ImageEnvironment black(grey_image(8, 4, [](int, int) { return 0.0F; }), UpAxis::kY, "b");
-  EXPECT_TRUE(Lights(black).is_dark());
-  EXPECT_TRUE(Lights(ConstantEnvironment(Spectrum(0))).is_dark());
-  EXPECT_FALSE(Lights(ConstantEnvironment(Spectrum(1))).is_dark());
-  EXPECT_FALSE(Lights(black, Sun({}, UpAxis::kY)).is_dark());
-  EXPECT_EQ(Lights(black).pdf({0, 1, 0}), kUniformSpherePdf);
-}
-
-TEST(ConstantEnvironment, RefusesNegativeLight) {
-  EXPECT_THROW(ConstantEnvironment(Spectrum(1, -1, 0)), Error);
-  EXPECT_THROW(ConstantEnvironment(Spectrum(std::numeric_limits<float>::infinity())), Error);
+  EXPECT_FALSE(Lights(black).is_drawn());
+  EXPECT_TRUE(Lights(black, Sun({}, UpAxis::kY)).is_drawn());
+  EXPECT_EQ(black.evaluate({0, 1, 0}).pdf, kUniformSpherePdf);
 }
 
 TEST(ImageEnvironment, FollowsTheLatLongConvention) {

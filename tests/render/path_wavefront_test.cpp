@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
 
 namespace freepath::testing {
@@ -14,59 +18,63 @@ namespace {
 
 constexpr int kColumns = 16;
 constexpr int kRows = 8;
+constexpr PathJob kJob{.first_pixel = 16, .pixels = 64, .first_sample = 0, .samples = 3};
 
 /// Everything that a path needs, in one place.
 struct Stage {
-  explicit Stage(const Spectrum& sigma_s)
-      : medium({Component{.density = make_field(Vec3i(-8), Vec3i(7), hash_noise),
-                          .sigma_a = Spectrum(0.01F),
-                          .sigma_s = sigma_s,
-                          .phase = {}}}),
-        camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kColumns, kRows),
-        lights(ConstantEnvironment(Spectrum(1.0F))) {
-    setup.medium = &medium;
-    setup.camera = &camera;
-    setup.lights = &lights;
+  explicit Stage(const Spectrum& sigma_s, const WalkSettings& walk = {})
+      : scene(scene_of(Medium({Component{.density = make_field(Vec3i(-8), Vec3i(7), hash_noise),
+                                         .sigma_a = Spectrum(0.01F),
+                                         .sigma_s = sigma_s,
+                                         .phase = {}}}),
+                       Camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kColumns, kRows),
+                       {Spectrum(1.0F), Sun({.elevation = 50}, UpAxis::kY)})),
+        factory(scene, ColorMode::kRgb, 3, walk) {
+    setup.scene = &scene;
+    setup.factory = &factory;
     setup.slots = 64;
-    if (medium.has_grey_extinction()) {
-      setup.walkers.emplace_back(medium, WalkSettings{});
-    } else {
-      for (int channel = 0; channel < kChannels; ++channel) {
-        setup.walkers.emplace_back(medium, WalkSettings{}, channel);
-      }
+    setup.first_set = kJob.first_sample;
+    for (uint32_t set = 0; set < kJob.samples; ++set) {
+      setup.colors.push_back(factory.colors_of_set(kJob.first_sample + set));
     }
   }
 
-  Medium medium;
-  Camera camera;
-  Lights lights;
+  PathScene scene;
+  ColorFactory factory;
   PathSetup setup;
 };
 
-constexpr PathJob kJob{.first_pixel = 16, .pixels = 64, .first_sample = 0, .samples = 3};
+/// Traces a job until `stop` says so.
+bool trace(PathWavefront& wavefront, const PathJob& job, Film& film,
+           const std::function<bool()>& stop) {
+  bool is_taken = false;
+  PathJobSource jobs;
+  jobs.next = [&]() -> std::optional<PathJob> {
+    if (std::exchange(is_taken, true)) return std::nullopt;
+    return job;
+  };
+  jobs.stop = stop;
+  return wavefront.trace(jobs, film);
+}
 
-void expect_same(const PathWavefront::Counts& a, const PathWavefront::Counts& b) {
+/// Of walks, those of jobs that were dropped count too.
+void expect_same_paths(const PathCounts& a, const PathCounts& b) {
   EXPECT_EQ(a.paths, b.paths);
   EXPECT_EQ(a.overflows, b.overflows);
-  EXPECT_EQ(a.free_paths.rays, b.free_paths.rays);
-  EXPECT_EQ(a.free_paths.lookups, b.free_paths.lookups);
-  EXPECT_EQ(a.shadow_rays.lookups, b.shadow_rays.lookups);
-  EXPECT_EQ(a.free_paths.real_collisions, b.free_paths.real_collisions);
+  EXPECT_EQ(a.cut_paths, b.cut_paths);
 }
 
 // A step of a nanometre makes 10^10 steps in a flight: the wish to stop reaches into it.
 TEST(PathWavefront, IsStoppedWithinAFlight) {
-  Stage stage(Spectrum(0.5F));
   WalkSettings settings;
   settings.tracker = "ray-marching:step=1e-9";
   settings.interpolation = Interpolation::kNearest;
-  stage.setup.walkers.clear();
-  stage.setup.walkers.emplace_back(stage.medium, settings);
+  const Stage stage(Spectrum(0.5F), settings);
   PathWavefront wavefront(stage.setup);
   for (const int allowed : {1, 2, 5}) {
     Film film(kColumns, kRows);
     int questions = 0;
-    EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return ++questions > allowed; }));
+    EXPECT_FALSE(trace(wavefront, kJob, film, [&] { return ++questions > allowed; }));
     EXPECT_EQ(questions, allowed + 1);
     for (int pixel = 0; pixel < kColumns * kRows; ++pixel) EXPECT_EQ(film.samples(pixel), 0U);
   }
@@ -79,23 +87,23 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
     Film whole(kColumns, kRows);
     PathWavefront undisturbed(stage.setup);
     uint64_t questions = 0;
-    ASSERT_TRUE(undisturbed.trace(kJob, whole, [&] { return ++questions, false; }));
+    ASSERT_TRUE(trace(undisturbed, kJob, whole, [&] { return ++questions, false; }));
     ASSERT_GT(questions, 10U);  // more than once a path: within paths
 
     PathWavefront wavefront(stage.setup);
     for (uint64_t allowed = 0; allowed < questions; ++allowed) {
       Film film(kColumns, kRows);
       uint64_t left = allowed;
-      EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return left-- == 0; })) << allowed;
+      EXPECT_FALSE(trace(wavefront, kJob, film, [&] { return left-- == 0; })) << allowed;
       EXPECT_EQ(film.sample_counts().most, 0U);
     }
-    expect_same(wavefront.counts(), {});
+    expect_same_paths(wavefront.counts(), {});
 
     // And what was stopped is no burden to what follows.
     Film film(kColumns, kRows);
     EXPECT_TRUE(wavefront.trace(kJob, film));
     EXPECT_EQ(film.to_image().values, whole.to_image().values);
-    expect_same(wavefront.counts(), undisturbed.counts());
+    expect_same_paths(wavefront.counts(), undisturbed.counts());
   }
 }
 

@@ -12,6 +12,7 @@
 #include "freepath/base/error.h"
 #include "freepath/paths/deadline.h"
 #include "tests/counted_clock.h"
+#include "tests/scene/volume_pictures.h"
 #include "tests/statistics.h"
 #include "tests/transport/media_for_tests.h"
 
@@ -51,7 +52,7 @@ Camera camera_for(const Medium& medium, int width, int height) {
 /// Time of a counted clock that passes between the end of a pass and that of the rendering.
 constexpr double kAfterTheEnd = 50 * kCountedTick;
 
-Lights constant_light(float radiance) { return Lights(ConstantEnvironment(Spectrum(radiance))); }
+Surroundings constant_light(float radiance) { return {Spectrum(radiance)}; }
 
 RenderSettings settings_of(uint32_t samples, const char* tracker = "delta") {
   RenderSettings settings;
@@ -314,7 +315,7 @@ TEST(Renderer, AFurnaceThatLosesOnePercentIsNoticed) {
 }
 
 std::vector<float> picture_of(const Medium& medium, const RenderSettings& settings) {
-  const Lights lights(ConstantEnvironment(Spectrum(0.3F)), Sun({.elevation = 50}, UpAxis::kY));
+  const Surroundings lights{Spectrum(0.3F), Sun({.elevation = 50}, UpAxis::kY)};
   return render(medium, camera_for(medium, 40, 30), lights, settings).film.to_image().values;
 }
 

@@ -1,4 +1,4 @@
-#include "freepath/sensors/scene_camera.h"
+#include "freepath/sensors/camera.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ Vec3d at_depth(const CameraRay& ray, double z) {
   return ray.origin + Vec3d(ray.direction) * ((z - ray.origin.z) / ray.direction.z);
 }
 
-Vec3f direction(const SceneCamera& camera, float x, float y) {
+Vec3f direction(const Camera& camera, float x, float y) {
   return camera.ray(x, y, 0.5F, 0.5F).direction;
 }
 
@@ -37,7 +37,7 @@ Vec3f unit(float x, float y, float z) { return Vec3f(x, y, z).normalized(); }
 
 TEST(PerspectiveCamera, LooksAheadInTheMiddleOfTheFilm) {
   for (const auto& [width, height] : {std::pair{640, 480}, std::pair{3, 7}}) {
-    const SceneCamera camera(PerspectiveCamera{}, kIdentity, width, height);
+    const Camera camera(PerspectiveCamera{}, kIdentity, width, height);
     const CameraRay ray = camera.ray(0.5F * width, 0.5F * height, 0.3F, 0.9F);
     EXPECT_EQ(ray.origin, Vec3d(0));
     expect_near(ray.direction, {0, 0, 1});
@@ -49,31 +49,31 @@ TEST(PerspectiveCamera, LooksAheadInTheMiddleOfTheFilm) {
 
 TEST(PerspectiveCamera, SpansTheAngleOfViewInTheShorterDirection) {
   const auto t = static_cast<float>(std::tan(std::numbers::pi / 6));
-  const SceneCamera landscape(PerspectiveCamera{.fov = 60}, kIdentity, 200, 100);
+  const Camera landscape(PerspectiveCamera{.fov = 60}, kIdentity, 200, 100);
   expect_near(direction(landscape, 100, 0), unit(0, t, 1));
   expect_near(direction(landscape, 0, 0), unit(-2 * t, t, 1));
   expect_near(direction(landscape, 200, 0), unit(2 * t, t, 1));
   expect_near(direction(landscape, 0, 100), unit(-2 * t, -t, 1));
   expect_near(direction(landscape, 150, 75), unit(t, -0.5F * t, 1));
-  const SceneCamera portrait(PerspectiveCamera{.fov = 60}, kIdentity, 100, 200);
+  const Camera portrait(PerspectiveCamera{.fov = 60}, kIdentity, 100, 200);
   expect_near(direction(portrait, 0, 100), unit(-t, 0, 1));
   expect_near(direction(portrait, 100, 200), unit(t, -2 * t, 1));
 }
 
 TEST(PerspectiveCamera, TakesTheShapeOfTheScreenFromTheFrame) {
   const auto shape = [](double aspect) {
-    return SceneCamera(PerspectiveCamera{.frame_aspect_ratio = aspect}, kIdentity, 100, 100);
+    return Camera(PerspectiveCamera{.frame_aspect_ratio = aspect}, kIdentity, 100, 100);
   };
   expect_near(direction(shape(2), 100, 0), unit(2, 1, 1));
   expect_near(direction(shape(0.5), 100, 0), unit(1, 2, 1));
 }
 
 TEST(PerspectiveCamera, ShowsTheScreenWindow) {
-  const SceneCamera camera(PerspectiveCamera{.fov = 90, .screen_window = {{-0.5, 1, 0.25, 0.75}}},
-                           kIdentity, 30, 10);
+  const Camera camera(PerspectiveCamera{.fov = 90, .screen_window = {{-0.5, 1, 0.25, 0.75}}},
+                      kIdentity, 30, 10);
   expect_near(direction(camera, 0, 0), unit(-0.5F, 0.75F, 1));
   expect_near(direction(camera, 30, 10), unit(1, 0.25F, 1));
-  const SceneCamera mirrored(PerspectiveCamera{.screen_window = {{1, -1, -1, 1}}}, kIdentity, 8, 8);
+  const Camera mirrored(PerspectiveCamera{.screen_window = {{1, -1, -1, 1}}}, kIdentity, 8, 8);
   expect_near(direction(mirrored, 0, 0), unit(1, 1, 1));
 }
 
@@ -81,8 +81,8 @@ TEST(PerspectiveCamera, FocusesTheRaysOfAPointOfTheFilmInAPlane) {
   const PerspectiveCamera pinhole{.fov = 50};
   PerspectiveCamera model = pinhole;
   model.lens = {.radius = 0.3, .focal_distance = 7};
-  const SceneCamera sharp(pinhole, kIdentity, 60, 40);
-  const SceneCamera camera(model, kIdentity, 60, 40);
+  const Camera sharp(pinhole, kIdentity, 60, 40);
+  const Camera camera(model, kIdentity, 60, 40);
   EXPECT_TRUE(camera.has_lens());
   RandomStream random(1, 0, 0, 0);
   for (int i = 0; i < 1000; ++i) {
@@ -97,8 +97,8 @@ TEST(PerspectiveCamera, FocusesTheRaysOfAPointOfTheFilmInAPlane) {
 }
 
 /// Chi-square test of points on a disk in rings and sectors of the same area.
-void expect_uniform_on_disk(const SceneCamera& camera, float film_x, float film_y,
-                            const Vec3d& centre, double radius) {
+void expect_uniform_on_disk(const Camera& camera, float film_x, float film_y, const Vec3d& centre,
+                            double radius) {
   constexpr int kRings = 8;
   constexpr int kSectors = 12;
   constexpr int kPoints = 200'000;
@@ -119,14 +119,14 @@ void expect_uniform_on_disk(const SceneCamera& camera, float film_x, float film_
 }
 
 TEST(PerspectiveCamera, SamplesTheLensUniformly) {
-  const SceneCamera camera(PerspectiveCamera{.lens = {.radius = 0.2, .focal_distance = 3}},
-                           kIdentity, 10, 10);
+  const Camera camera(PerspectiveCamera{.lens = {.radius = 0.2, .focal_distance = 3}}, kIdentity,
+                      10, 10);
   expect_uniform_on_disk(camera, 2, 3, Vec3d(0), 0.2);
   expect_near(Vec3f(camera.ray(2, 3, 0.5F, 0.5F).origin), Vec3f(0));
 }
 
 TEST(OrthographicCamera, SendsParallelRaysFromTheScreen) {
-  const SceneCamera camera(OrthographicCamera{}, kIdentity, 200, 100);
+  const Camera camera(OrthographicCamera{}, kIdentity, 200, 100);
   for (const auto& [x, y, place] :
        {std::tuple{0.0F, 0.0F, Vec3d(-2, 1, 0)}, std::tuple{200.0F, 100.0F, Vec3d(2, -1, 0)},
         std::tuple{150.0F, 50.0F, Vec3d(1, 0, 0)}}) {
@@ -134,13 +134,13 @@ TEST(OrthographicCamera, SendsParallelRaysFromTheScreen) {
     EXPECT_LE((ray.origin - place).length(), 1e-6);
     expect_near(ray.direction, {0, 0, 1});
   }
-  const SceneCamera window(OrthographicCamera{.screen_window = {{3, 5, -1, 8}}}, kIdentity, 4, 4);
+  const Camera window(OrthographicCamera{.screen_window = {{3, 5, -1, 8}}}, kIdentity, 4, 4);
   EXPECT_LE((window.ray(0, 4, 0, 0).origin - Vec3d(3, -1, 0)).length(), 1e-6);
 }
 
 TEST(OrthographicCamera, FocusesOnThePointsThatItShowsWithoutALens) {
-  const SceneCamera camera(OrthographicCamera{.lens = {.radius = 0.4, .focal_distance = 5}},
-                           kIdentity, 20, 20);
+  const Camera camera(OrthographicCamera{.lens = {.radius = 0.4, .focal_distance = 5}}, kIdentity,
+                      20, 20);
   const Vec3d place(0.5, -0.5, 0);
   RandomStream random(3, 0, 0, 0);
   for (int i = 0; i < 200; ++i) {
@@ -152,8 +152,7 @@ TEST(OrthographicCamera, FocusesOnThePointsThatItShowsWithoutALens) {
 }
 
 TEST(SphericalCamera, LaysLongitudeAndLatitudeOnTheFilm) {
-  const SceneCamera camera(SphericalCamera{SphericalMapping::kEquirectangular}, kIdentity, 400,
-                           200);
+  const Camera camera(SphericalCamera{SphericalMapping::kEquirectangular}, kIdentity, 400, 200);
   expect_near(direction(camera, 123, 0), {0, 1, 0});
   expect_near(direction(camera, 321, 200), {0, -1, 0});
   expect_near(direction(camera, 0, 100), {1, 0, 0});
@@ -163,7 +162,7 @@ TEST(SphericalCamera, LaysLongitudeAndLatitudeOnTheFilm) {
 }
 
 TEST(SphericalCamera, LaysTheOctahedronOnTheFilm) {
-  const SceneCamera camera(SphericalCamera{}, kIdentity, 100, 100);
+  const Camera camera(SphericalCamera{}, kIdentity, 100, 100);
   expect_near(direction(camera, 50, 50), {0, 1, 0});
   expect_near(direction(camera, 100, 50), {1, 0, 0});
   expect_near(direction(camera, 0, 50), {-1, 0, 0});
@@ -176,7 +175,7 @@ TEST(SphericalCamera, LaysTheOctahedronOnTheFilm) {
 }
 
 TEST(SphericalCamera, GivesEachPixelTheSameSolidAngle) {
-  const SceneCamera camera(SphericalCamera{}, kIdentity, 100, 100);
+  const Camera camera(SphericalCamera{}, kIdentity, 100, 100);
   RandomStream random(4, 0, 0, 0);
   for (int i = 0; i < 10'000; ++i) {
     const float x = 1 + 98 * random.uniform();
@@ -197,7 +196,7 @@ TEST(SphericalCamera, CoversTheSphereUniformly) {
   constexpr int kBands = 10;
   constexpr int kSectors = 16;
   constexpr int kPoints = 500'000;
-  const SceneCamera camera(SphericalCamera{}, kIdentity, 64, 32);
+  const Camera camera(SphericalCamera{}, kIdentity, 64, 32);
   std::vector<uint64_t> counts(kBands * kSectors);
   RandomStream random(5, 0, 0, 0);
   for (int i = 0; i < kPoints; ++i) {
@@ -212,9 +211,9 @@ TEST(SphericalCamera, CoversTheSphereUniformly) {
 }
 
 TEST(SphericalCamera, GoesOnBeyondTheEdgesOfTheFilm) {
-  const SceneCamera octahedral(SphericalCamera{}, kIdentity, 64, 64);
-  const SceneCamera globe(SphericalCamera{SphericalMapping::kEquirectangular}, kIdentity, 64, 64);
-  for (const SceneCamera* camera : {&octahedral, &globe}) {
+  const Camera octahedral(SphericalCamera{}, kIdentity, 64, 64);
+  const Camera globe(SphericalCamera{SphericalMapping::kEquirectangular}, kIdentity, 64, 64);
+  for (const Camera* camera : {&octahedral, &globe}) {
     constexpr float kOff = 0.01F;
     for (float along = 0.5F; along < 64; along += 1) {
       for (const float edge : {0.0F, 64.0F}) {
@@ -227,13 +226,13 @@ TEST(SphericalCamera, GoesOnBeyondTheEdgesOfTheFilm) {
   }
 }
 
-TEST(SceneCamera, StandsWhereLookAtPutsIt) {
+TEST(Camera, StandsWhereLookAtPutsIt) {
   // Looking along -x with z up; in a left-handed world y is to the left then.
   const Vec3d from(3, 1, 2);
   const Matrix4d world_from_camera = look_at(from, {0, 1, 2}, {0, 0, 1}).inverse();
   const CameraModel models[] = {PerspectiveCamera{.fov = 90}, OrthographicCamera{}};
   for (const CameraModel& model : models) {
-    const SceneCamera camera(model, world_from_camera, 90, 90);
+    const Camera camera(model, world_from_camera, 90, 90);
     // The point of the world 4 ahead, 2 to the right and 1 up; the screen's edge is 4 or 1 away.
     const bool is_perspective = std::holds_alternative<PerspectiveCamera>(model);
     const float scale = is_perspective ? 45.0F / 4 : 45.0F / 1;
@@ -243,46 +242,45 @@ TEST(SceneCamera, StandsWhereLookAtPutsIt) {
     EXPECT_LE(offset.cross(Vec3d(ray.direction)).length(), 1e-5);
     EXPECT_GT(offset.dot(Vec3d(ray.direction)), 0);
   }
-  const SceneCamera simple(PerspectiveCamera{}, look_at(Vec3d(0), {0, 0, 1}, {0, 1, 0}).inverse(),
-                           8, 8);
+  const Camera simple(PerspectiveCamera{}, look_at(Vec3d(0), {0, 0, 1}, {0, 1, 0}).inverse(), 8, 8);
   EXPECT_GT(direction(simple, 8, 4).x, 0);
   EXPECT_GT(direction(simple, 4, 0).y, 0);
 }
 
-TEST(SceneCamera, SeesTheWorldMirroredThroughAMirroringTransform) {
-  const SceneCamera camera(PerspectiveCamera{}, scaling({-1, 1, 1}), 8, 8);
+TEST(Camera, SeesTheWorldMirroredThroughAMirroringTransform) {
+  const Camera camera(PerspectiveCamera{}, scaling({-1, 1, 1}), 8, 8);
   expect_near(direction(camera, 8, 0), unit(-1, 1, 1));
 }
 
-TEST(SceneCamera, KeepsThePositionInDoublePrecisionAndDirectionsOfUnitLength) {
+TEST(Camera, KeepsThePositionInDoublePrecisionAndDirectionsOfUnitLength) {
   const Vec3d far(1e9 + 0.25, -3, 1e-3);
   const CameraModel models[] = {PerspectiveCamera{}, OrthographicCamera{}, SphericalCamera{}};
   for (const double scale : {1e-25, 0.01, 1.0, 300.0, 1e25}) {
     for (const CameraModel& model : models) {
       const Matrix4d matrix = scaling(Vec3d(scale)) * translation(far);
-      const SceneCamera camera(model, matrix, 20, 20);
+      const Camera camera(model, matrix, 20, 20);
       const CameraRay middle = camera.ray(10, 10, 0.5F, 0.5F);
       EXPECT_LE((middle.origin - far).length(), 1e-15 * scale);
       expect_near(camera.ray(3, 4, 0.5F, 0.5F).direction,
-                  SceneCamera(model, kIdentity, 20, 20).ray(3, 4, 0.5F, 0.5F).direction);
+                  Camera(model, kIdentity, 20, 20).ray(3, 4, 0.5F, 0.5F).direction);
     }
   }
 }
 
-TEST(SceneCamera, ScalesTheLensWithTheTransform) {
+TEST(Camera, ScalesTheLensWithTheTransform) {
   const Matrix4d matrix = scaling(Vec3d(10)) * translation({0, 0, 1});
-  const SceneCamera camera(PerspectiveCamera{.lens = {.radius = 0.1, .focal_distance = 2}}, matrix,
-                           20, 20);
+  const Camera camera(PerspectiveCamera{.lens = {.radius = 0.1, .focal_distance = 2}}, matrix, 20,
+                      20);
   const CameraRay ray = camera.ray(20, 10, 0.999F, 0.5F);
   EXPECT_NEAR(ray.origin.x, 0.998, 1e-3);
   EXPECT_LE((at_depth(ray, 21) - Vec3d(20, 0, 21)).length(), 1e-4);
 }
 
-TEST(SceneCamera, RefusesWhatMakesNoPicture) {
+TEST(Camera, RefusesWhatMakesNoPicture) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto refuses = [](const CameraModel& model, const Matrix4d& matrix = kIdentity,
                           int width = 10, int height = 10) {
-    EXPECT_THROW(SceneCamera(model, matrix, width, height), Error);
+    EXPECT_THROW(Camera(model, matrix, width, height), Error);
   };
   for (const double fov : {0.0, -30.0, 180.0, kNan}) refuses(PerspectiveCamera{.fov = fov});
   for (const double aspect : {0.0, -1.0, kNan}) {
@@ -309,7 +307,7 @@ TEST(SceneCamera, RefusesWhatMakesNoPicture) {
     projection[2][3] = 1;
     refuses(model, projection);
   }
-  EXPECT_NO_THROW(SceneCamera(PerspectiveCamera{.lens = {0, 0}}, kIdentity, 1, 1));
+  EXPECT_NO_THROW(Camera(PerspectiveCamera{.lens = {0, 0}}, kIdentity, 1, 1));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/io/image.h"
-#include "freepath/paths/scene_wavefront.h"
+#include "freepath/paths/path_wavefront.h"
 #include "freepath/scene/assembly/scene_builder.h"
 #include "tests/scene/scenes_in_memory.h"
 #include "tests/statistics.h"
@@ -61,7 +61,7 @@ Rendered render(const PathScene& scene, uint32_t pictures, const Way& way) {
   walk.tracker = way.tracker;
   walk.origin = scene.origin;
   const ColorFactory factory(scene, way.mode, 4, walk);
-  SceneSetup setup;
+  PathSetup setup;
   setup.scene = &scene;
   setup.factory = &factory;
   setup.max_scatterings = way.max_scatterings;
@@ -70,7 +70,7 @@ Rendered render(const PathScene& scene, uint32_t pictures, const Way& way) {
   for (uint32_t set = 0; set < (pictures + block - 1) / block * block; ++set) {
     setup.colors.push_back(factory.colors_of_set(set));
   }
-  SceneWavefront wavefront(setup);
+  PathWavefront wavefront(setup);
   Rendered rendered;
   for (uint32_t i = 0; i < pictures; ++i) {
     Film film(kSize, kSize);

@@ -13,7 +13,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/vector.h"
-#include "freepath/paths/scene_renderer.h"
+#include "freepath/paths/renderer.h"
 #include "freepath/scene/assembly/scene_builder.h"
 #include "freepath/scene/pbrt/parser.h"
 #include "tests/scene/scenes_in_memory.h"

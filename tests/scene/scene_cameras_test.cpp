@@ -25,7 +25,7 @@ void expect_share(const std::string& name, const std::string& scene, double shar
               {.absolute = 1e-4 * share, .largest_relative_error = 0.0025});
 }
 
-TEST(SceneCamera, PerspectiveShowsADiskAsItsAreaOverThatOfTheScreen) {
+TEST(Camera, PerspectiveShowsADiskAsItsAreaOverThatOfTheScreen) {
   const std::string disk =
       "Translate .2 -.1 0 Shape \"disk\" \"float height\" 4 \"float radius\" 1.2\n";
   const double edge = 2 * std::tan(50 * std::numbers::pi / 360);
@@ -41,7 +41,7 @@ TEST(SceneCamera, PerspectiveShowsADiskAsItsAreaOverThatOfTheScreen) {
                area / (2 * edge * edge), 1536);
 }
 
-TEST(SceneCamera, OrthographicShowsADiskAsItsAreaOverThatOfTheScreen) {
+TEST(Camera, OrthographicShowsADiskAsItsAreaOverThatOfTheScreen) {
   const std::string disk =
       "Translate .2 -.1 0 Shape \"disk\" \"float height\" 4 \"float radius\" .7\n";
   expect_share("screen", seen(R"(Camera "orthographic")", disk), std::numbers::pi * 0.49 / 4);
@@ -50,13 +50,13 @@ TEST(SceneCamera, OrthographicShowsADiskAsItsAreaOverThatOfTheScreen) {
 }
 
 // The cone around a sphere.
-TEST(SceneCamera, SphericalOfEqualAreaShowsASphereAsItsSolidAngle) {
+TEST(Camera, SphericalOfEqualAreaShowsASphereAsItsSolidAngle) {
   const std::string sphere = "Translate .3 1.1 -.4 Shape \"sphere\" \"float radius\" .9\n";
   const double sine_2 = 0.81 / (0.09 + 1.21 + 0.16);
   expect_share("sphere", seen(R"(Camera "spherical")", sphere), (1 - std::sqrt(1 - sine_2)) / 2);
 }
 
-TEST(SceneCamera, EquirectangularShowsASphereAboveAsARangeOfLatitudes) {
+TEST(Camera, EquirectangularShowsASphereAboveAsARangeOfLatitudes) {
   const std::string sphere = "Translate 0 2 0 Shape \"sphere\" \"float radius\" 1\n";
   expect_share("sphere", seen(R"(Camera "spherical" "string mapping" "equirectangular")", sphere),
                (std::numbers::pi / 6) / std::numbers::pi);
@@ -74,7 +74,7 @@ std::string blurred_edge(const std::string& camera, double x, double focus) {
 }
 
 // From (lens, 0) to (8 x, 8) of the camera's space, at half the way: (lens + 8 x) / 2 > 0.
-TEST(SceneCamera, LensOfAPerspectiveBlursAnEdgeAsItsDisk) {
+TEST(Camera, LensOfAPerspectiveBlursAnEdgeAsItsDisk) {
   const std::string camera = R"(Camera "perspective" "float fov" 90)";
   for (const double x : {-0.01, 0.0, 0.04}) {
     expect_share(fmt::format("at {}", x), blurred_edge(camera, x, 8), part_above(-8 * x / 0.5),
@@ -85,14 +85,14 @@ TEST(SceneCamera, LensOfAPerspectiveBlursAnEdgeAsItsDisk) {
 }
 
 // From (x + lens, 0) to (x, 8), at half the way: x + lens / 2 > 0.
-TEST(SceneCamera, LensOfAnOrthographicBlursAnEdgeAsItsDisk) {
+TEST(Camera, LensOfAnOrthographicBlursAnEdgeAsItsDisk) {
   for (const double x : {-0.03, 0.0, 0.12}) {
     expect_share(fmt::format("at {}", x), blurred_edge(R"(Camera "orthographic")", x, 8),
                  part_above(-2 * x / 0.5), 1024);
   }
 }
 
-TEST(SceneCamera, IsoAndShutterScaleThePicture) {
+TEST(Camera, IsoAndShutterScaleThePicture) {
   const std::string text =
       "Integrator \"volpath\"\nFilm \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 "
       "\"float iso\" 250\nPixelFilter \"box\"\n"

@@ -43,7 +43,8 @@ std::array<RunningStatistics, 3> seen_face_on(OpticalProperties optics, const ch
   optics.temperature_scale = 2;
   optics.temperature_offset = -150;
   volumes[0].optics = std::move(optics);
-  const Medium medium = make_medium(std::move(volumes), 0);
+  const VolumeMedium volume = make_medium(std::move(volumes), 0);
+  const Medium& medium = *volume.medium;
   const Vec3d middle = medium.world_bounds().center();
   CameraOptions view{.width = 8, .height = 8, .fov = 1e-3, .from = {}, .at = middle};
   view.from = middle + Vec3d(0, 0, 500);
@@ -53,7 +54,7 @@ std::array<RunningStatistics, 3> seen_face_on(OpticalProperties optics, const ch
   settings.walk.tracker = tracker;
   settings.walk.interpolation = Interpolation::kNearest;
   const RenderResult result =
-      render(medium, camera, Lights(ConstantEnvironment(Spectrum(0.0F))), settings);
+      render_scene(make_volume_scene(volume, camera, {}), ColorMode::kRgb, settings);
   const Image image = result.film.to_image(LayerSet::standard());
   std::array<RunningStatistics, 3> means;
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
@@ -93,7 +94,7 @@ TEST(VolumeTemperature, WhatIsColdDoesNotGlow) {
   std::vector<Volume> volumes(1);
   volumes[0].densities.push_back(*glowing_cube(1));
   volumes[0].temperature = glowing_cube(90);  // [K]
-  EXPECT_FALSE(make_medium(std::move(volumes), 0).emits());
+  EXPECT_FALSE(make_medium(std::move(volumes), 0).medium->emits());
 }
 
 }  // namespace

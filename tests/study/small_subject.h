@@ -24,19 +24,18 @@ inline Subject small_subject(bool chromatic = false, int width = 64, int height 
   CameraOptions options;
   options.width = width;
   options.height = height;
-  const auto camera = std::make_shared<const Camera>(make_camera(*medium, options, UpAxis::kY));
   LightOptions light;
   light.environment = Spectrum(0.5F, 0.7F, 1.0F);
   light.sun = false;
-  const auto lights = std::make_shared<const Lights>(make_lights(light, UpAxis::kY));
+  const auto scene = std::make_shared<const PathScene>(make_volume_scene(
+      {medium}, make_camera(*medium, options, UpAxis::kY), make_surroundings(light, UpAxis::kY)));
   Subject subject;
   subject.name = "ball";
   subject.digest = chromatic ? "chromatic ball" : "ball";
   subject.width = width;
   subject.height = height;
-  subject.render = [medium, camera, lights](const RenderSettings& settings,
-                                            const ProgressFunction& progress) {
-    return render(*medium, *camera, *lights, settings, progress);
+  subject.render = [scene](const RenderSettings& settings, const ProgressFunction& progress) {
+    return render_scene(*scene, ColorMode::kRgb, settings, progress);
   };
   return subject;
 }

@@ -373,7 +373,7 @@ void build_camera(BuildContext& context, const FilmSize& size) {
   pass_over(camera.parameters, {"shutteropen", "shutterclose"});
   camera.parameters.report_unused(context.diagnostics);
   context.scene.camera = at_location(camera.location, [&] {
-    return SceneCamera(model, camera.camera_from_world.start.inverse(), size.width, size.height);
+    return Camera(model, camera.camera_from_world.start.inverse(), size.width, size.height);
   });
   context.scene.camera_media.add(medium_of(context, camera.medium), 1);
 }

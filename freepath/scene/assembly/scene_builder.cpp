@@ -18,7 +18,7 @@ namespace freepath {
 namespace {
 
 /// All that has a place, and the camera.
-Box3d extent_of(const BuiltShapes& shapes, const SceneCamera& camera) {
+Box3d extent_of(const BuiltShapes& shapes, const Camera& camera) {
   Box3d extent;
   if (!shapes.empty()) {
     const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();

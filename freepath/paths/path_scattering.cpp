@@ -1,12 +1,12 @@
-// What happens to the paths of a SceneWavefront at surfaces and collisions.
+// What happens to the paths of a PathWavefront at surfaces and collisions.
 
-#include "freepath/paths/scene_wavefront.h"
+#include "freepath/paths/path_wavefront.h"
 
 #include "freepath/paths/alpha_chance.h"
 
 namespace freepath {
 
-bool SceneWavefront::sees_rgb(const ScenePath& path) const {
+bool PathWavefront::sees_rgb(const ScenePath& path) const {
   if (!setup_.factory->sees_rgb() || path.is_coloured || records_spectra_) return false;
   const Channels& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
@@ -15,15 +15,15 @@ bool SceneWavefront::sees_rgb(const ScenePath& path) const {
   return true;
 }
 
-Channels SceneWavefront::light_throughput(const ScenePath& path, bool in_rgb) {
+Channels PathWavefront::light_throughput(const ScenePath& path, bool in_rgb) {
   return in_rgb ? Channels(path.throughput[0]) : path.throughput;
 }
 
-const SpectrumValues& SceneWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
+const SpectrumValues& PathWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
   return in_rgb ? setup_.factory->rgb() : path.colors->spectra;
 }
 
-void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
+void PathWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
   path.origin = origin;
   path.direction = direction;
   path.hit.reset();
@@ -32,21 +32,21 @@ void SceneWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& di
   ++path.flights;
 }
 
-int SceneWavefront::rank(uint32_t shape) const {
+int PathWavefront::rank(uint32_t shape) const {
   const PathShape& sides = scene_.shapes[shape];
   if (sides.light) return 3;
   if (!sides.material) return 0;
   return scene_.materials[*sides.material].transmits() ? 1 : 2;
 }
 
-void SceneWavefront::turn(ScenePath& path, const Vec3f& from, const Vec3f& origin,
-                          const Vec3f& direction) const {
+void PathWavefront::turn(ScenePath& path, const Vec3f& from, const Vec3f& origin,
+                         const Vec3f& direction) const {
   path.turned_at = from;
   go_on(path, origin, direction);
   path.turned_in = path.flights;
 }
 
-std::optional<SurfaceHit> SceneWavefront::first_there(const ScenePath& path) {
+std::optional<SurfaceHit> PathWavefront::first_there(const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
   const AlphaChance chance{setup_.seed, path.pixel, path.sample_key,
                            stream_number(StreamPurpose::kWalk, path.turned_in)};
@@ -68,7 +68,7 @@ std::optional<SurfaceHit> SceneWavefront::first_there(const ScenePath& path) {
   }
 }
 
-std::optional<SurfaceHit> SceneWavefront::choose_surface(const ScenePath& path) {
+std::optional<SurfaceHit> PathWavefront::choose_surface(const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
   SurfaceHit hit = *path.hit;
   if (has_alpha_) {
@@ -107,8 +107,8 @@ std::optional<SurfaceHit> SceneWavefront::choose_surface(const ScenePath& path) 
   return hit;
 }
 
-SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const SurfaceHit& hit,
-                                                 const Vec3f& direction) {
+PathWavefront::Departure PathWavefront::depart(const ScenePath& path, const SurfaceHit& hit,
+                                               const Vec3f& direction) {
   Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.place};
   const auto cross = [&](uint32_t shape, bool enters) {
     departure.place = places_.cross(departure.place, shape, enters);
@@ -123,8 +123,8 @@ SceneWavefront::Departure SceneWavefront::depart(const ScenePath& path, const Su
   return departure;
 }
 
-LightDraw SceneWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
-                                     RandomStream& random) const {
+LightDraw PathWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                                    RandomStream& random) const {
   const float u0 = random.uniform();
   const float u1 = random.uniform();
   const float u2 = random.uniform();
@@ -145,26 +145,26 @@ LightDraw SceneWavefront::draw_light(const Vec3f& position, const SpectrumValues
   return light;
 }
 
-void SceneWavefront::pass_hole(ScenePath& path) {
+void PathWavefront::pass_hole(ScenePath& path) {
   if (path.scatterings == 0) path.distance += path.hit->t;
   go_on(path, scene_.surfaces->offset_ray_origin(path.hit->point, path.direction), path.direction);
 }
 
-void SceneWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
+void PathWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
   const Departure departure = depart(path, hit, path.direction);
   set_place(path, departure.place);
   if (path.scatterings == 0) path.distance += hit.t;
   go_on(path, departure.origin, path.direction);
 }
 
-bool SceneWavefront::is_hole(const ScenePath& path, const SurfaceHit& hit,
-                             const Material& material) const {
+bool PathWavefront::is_hole(const ScenePath& path, const SurfaceHit& hit,
+                            const Material& material) const {
   if (!material.has_holes()) return false;
   const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   return material.is_hole(hit.point, path.direction, context);
 }
 
-void SceneWavefront::meet_surface(std::size_t slot) {
+void PathWavefront::meet_surface(std::size_t slot) {
   ScenePath& path = paths_[slot];
   const std::optional<SurfaceHit> met = choose_surface(path);
   if (!met) {
@@ -191,14 +191,14 @@ void SceneWavefront::meet_surface(std::size_t slot) {
   scatter_at_surface(slot, hit);
 }
 
-void SceneWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
+void PathWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
   const int channels = path.colors->spectra.channels();
   float sum = 0;
   for (int c = 0; c < channels; ++c) sum += path.throughput[c] * albedo[c];
   jobs_[path.job].counts.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
 }
 
-bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
+bool PathWavefront::survives(ScenePath& path, RandomStream& random) const {
   const float throughput = largest_magnitude(path.throughput);
   if (throughput == 0) return false;
   if (throughput >= setup_.roulette_threshold) return true;
@@ -208,7 +208,7 @@ bool SceneWavefront::survives(ScenePath& path, RandomStream& random) const {
   return true;
 }
 
-void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) {
+void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) {
   ScenePath& path = paths_[slot];
   const PathShape& shape = scene_.shapes[hit.point.shape];
   const Material& material = scene_.materials[*shape.material];
@@ -217,10 +217,9 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
   }
   if (path.scatterings++ == 0) {
     const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
-    record_event(path, hit.t, material.albedo(hit.point, path.direction, context),
+    record_event(path, hit.t, path.throughput, material.albedo(hit.point, path.direction, context),
                  hit.point.shading_normal);
     if (jobs_.layers.on()) jobs_.layers.transmittance(path.result, transmittance_of(path));
-    path.sample.alpha = 1;
   }
   const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
@@ -267,20 +266,13 @@ void SceneWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit)
   turn(path, position, departure.origin, next->direction);
 }
 
-void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
+void PathWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
   ScenePath& path = paths_[slot];
-  MediumWalkers::Origin scatterer{path.medium, static_cast<uint32_t>(component)};
-  const auto& origins = path.colors->walkers(path.medium).origins;
-  if (!origins.empty()) scatterer = origins[component];
-  component = scatterer.component;
-  const SceneMedium& medium = scene_.media[scatterer.medium];
+  const MediumWalkers::Origin scatterer = scatterer_of(path, component);
   if (jobs_.layers.on()) {
     jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
-  if (path.scatterings++ == 0) {
-    record_event(path, t, medium.albedo(component, setup_.factory->rgb()), -path.direction);
-    path.sample.alpha = 1;
-  }
+  if (path.scatterings++ == 0) record_medium_event(path, t, scatterer);
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
                       stream_number(StreamPurpose::kScatter, path.flights));
   if (is_cut(path)) {
@@ -293,7 +285,7 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
     return;
   }
   const Vec3f position = path.origin + path.direction * t;
-  const PhaseFunction& phase = medium.phase(component);
+  const PhaseFunction& phase = scene_.media[scatterer.medium].phase(scatterer.component);
   if (scene_.lights->is_drawn()) {
     const bool in_rgb = sees_rgb(path);
     const LightDraw light = draw_light(position, light_spectra(path, in_rgb), random);
@@ -320,9 +312,9 @@ void SceneWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t co
   }
 }
 
-void SceneWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
-                                   const Vec3f& position, const PhaseFunction& phase,
-                                   RandomStream& random) {
+void PathWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
+                                  const Vec3f& position, const PhaseFunction& phase,
+                                  RandomStream& random) {
   const ScenePath& path = paths_[slot];
   const auto drawn = guide.sample(position, random);
   if (!drawn || !(drawn->pdf > 0)) return;

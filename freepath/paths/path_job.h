@@ -1,0 +1,69 @@
+#pragma once
+/// @file The work of a wavefront of paths, and what came of it.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "freepath/tracking/statistics.h"
+
+namespace freepath {
+
+/// A rectangle of work: `pixels` pixels of the film from `first_pixel` on (row-major), samples
+/// [first_sample, first_sample + samples) of each.
+struct PathJob {
+  std::size_t first_pixel = 0;
+  std::size_t pixels = 0;
+  uint32_t first_sample = 0;
+  uint32_t samples = 0;
+
+  std::size_t sample_count() const { return pixels * samples; }
+};
+
+/// Where a wavefront gets its jobs from.
+struct PathJobSource {
+  /// The next job, none of which has a pixel of another that is under way; nothing if there is
+  /// none.
+  std::function<std::optional<PathJob>()> next;
+  /// Told of each that has been added to the film.
+  std::function<void(const PathJob&)> finished = [](const PathJob&) {};
+  /// Asked before every flight; once it is true the jobs under way are dropped whole: nothing of
+  /// them is added to the film.
+  std::function<bool()> stop = [] { return false; };
+  /// Whether a job may begin before the one before it has ended, so that lanes stay full.
+  bool overlaps = true;
+};
+
+/// What came of paths.
+struct PathCounts {
+  WalkStatistics free_paths;   ///< Of the tracker.
+  WalkStatistics shadow_rays;  ///< Of the transmittance estimator.
+  uint64_t paths = 0;
+  /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
+  /// not to be trusted. Only rates that are no bound can do that.
+  uint64_t overflows = 0;
+  /// Paths that the limit of scatterings ended, and the weight that they still had: the mean of
+  /// their channels, in units of kWeightUnit, so that sums don't depend on their order.
+  uint64_t cut_paths = 0, cut_weight = 0;
+  static constexpr double kWeightUnit = 0x1p-20;
+
+  /// Counts a path that the limit ends.
+  void cut(float weight) {
+    constexpr double kMost = 1e6;
+    ++cut_paths;
+    cut_weight += static_cast<uint64_t>(std::clamp(double{weight}, 0.0, kMost) / kWeightUnit);
+  }
+
+  void merge(const PathCounts& other) {
+    free_paths.merge(other.free_paths);
+    shadow_rays.merge(other.shadow_rays);
+    paths += other.paths;
+    overflows += other.overflows;
+    cut_paths += other.cut_paths;
+    cut_weight += other.cut_weight;
+  }
+};
+
+}  // namespace freepath

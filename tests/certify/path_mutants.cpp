@@ -1,0 +1,5 @@
+// The renderer with errors planted in its paths; takes the place of the library's own.
+
+#include "freepath/paths/path_wavefront.cpp"          // NOLINT(bugprone-suspicious-include)
+#include "freepath/paths/renderer.cpp"                // NOLINT(bugprone-suspicious-include)
+#include "tests/certify/planted/path_scattering.cpp"  // NOLINT(bugprone-suspicious-include)

@@ -1,4 +1,0 @@
-// The renderer of volumes with errors planted in its paths; takes the place of the library's own.
-
-#include "freepath/paths/renderer.cpp"               // NOLINT(bugprone-suspicious-include)
-#include "tests/certify/planted/path_wavefront.cpp"  // NOLINT(bugprone-suspicious-include)
