@@ -12,6 +12,16 @@ endif()
 # Collecting garbage below a gigabyte costs the compiler a tenth of its time.
 target_compile_options(freepath_options INTERFACE
                        $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # The string instruction that GCC clears structs of some hundred bytes with takes as long as a random
+  # number.
+  target_compile_options(freepath_options INTERFACE
+                         -mmemset-strategy=unrolled_loop:512:noalign,libcall:-1:noalign)
+endif()
+# Nobody replaces our functions when the program starts, and only so may GCC put one into another in
+# code for any address.
+target_compile_options(freepath_options INTERFACE
+                       $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 # A program loads only the libraries that it calls.
 target_link_options(freepath_options INTERFACE -Wl,--as-needed)
 if(FREEPATH_SANITIZE)

@@ -30,15 +30,23 @@ EmissionTally read_emission_tally(const PictureOptions& options) {
   return tally;
 }
 
+/// One number or three from a place on.
+Spectrum spectrum_of(const std::vector<double>& numbers, std::size_t first) {
+  const auto at = [&](std::size_t i) { return static_cast<float>(numbers[first + i]); };
+  return numbers.size() < first + 3 ? Spectrum(at(0)) : Spectrum(at(0), at(1), at(2));
+}
+
 void add_light_options(CLI::App& command, PictureOptions& o) {
   command
       .add_option("--environment", o.environment,
-                  "sky, a radiance V or R,G,B, or a latitude-longitude image (.hdr, .exr) [sky]")
+                  "sky, a radiance V or R,G,B, or a latitude-longitude image (.hdr, .exr) [sky; "
+                  "of a scene it replaces the lights from all around]")
       ->group("Light");
   command
       .add_option("--sun", o.sun,
-                  "ELEVATION,AZIMUTH of the sun's disc [degrees, azimuth clockwise from north], "
-                  "or none [38,255 under a sky, else none]")
+                  "ELEVATION,AZIMUTH[,IRRADIANCE] of the sun's disc [degrees, azimuth clockwise "
+                  "from north; V or R,G,B on what faces it, that of sunlight where it is not "
+                  "given], or none [38,255 under a sky, else none]")
       ->group("Light");
   command.add_option("--turbidity", o.turbidity, "Haze of sky and sun, 2 to 10")
       ->capture_default_str()
@@ -66,6 +74,18 @@ void add_camera_options(CLI::App& command, PictureOptions& o) {
       .add_option("--look-at", o.look_at,
                   "Camera position, and perhaps its target: X,Y,Z[,ATX,ATY,ATZ]; by default all "
                   "of the volume is framed")
+      ->group("Picture");
+  command
+      .add_option("--camera", o.camera,
+                  "perspective, orthographic (as wide as the former is where it looks at) or "
+                  "spherical (all around, latitude-longitude)")
+      ->capture_default_str()
+      ->group("Picture");
+  command
+      .add_option(
+          "--ground", o.ground,
+          "ALBEDO[,HEIGHT], or R,G,B[,HEIGHT], of a level plane that reflects evenly [none; "
+          "HEIGHT: the bottom of all else]")
       ->group("Picture");
   command.add_option("--fov", o.fov, "Vertical angle of view [degrees]")
       ->capture_default_str()
@@ -146,18 +166,26 @@ LightOptions read_lights(const PictureOptions& options) {
   lights.sun = options.sun.empty() ? default_lights : options.sun != "none";
   lights.sun_parameters.turbidity = options.turbidity;
   if (!options.sun.empty() && options.sun != "none") {
-    const std::vector<double> angles = parse_numbers(options.sun, "--sun");
-    if (angles.size() != 2) {
-      fail("--sun: '{}' is not ELEVATION,AZIMUTH in degrees, nor none", options.sun);
+    const std::vector<double> numbers = parse_numbers(options.sun, "--sun");
+    if (numbers.size() != 2 && numbers.size() != 3 && numbers.size() != 5) {
+      fail(
+          "--sun: '{}' is not ELEVATION,AZIMUTH in degrees, perhaps with an irradiance V or R,G,B, "
+          "nor none",
+          options.sun);
     }
-    lights.sun_parameters.elevation = angles[0];
-    lights.sun_parameters.azimuth = angles[1];
+    lights.sun_parameters.elevation = numbers[0];
+    lights.sun_parameters.azimuth = numbers[1];
+    if (numbers.size() > 2) lights.sun_parameters.irradiance = spectrum_of(numbers, 2);
   }
   return lights;
 }
 
 CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
+  constexpr std::array kKinds{Choice<CameraKind>{"perspective", CameraKind::kPerspective},
+                              Choice<CameraKind>{"orthographic", CameraKind::kOrthographic},
+                              Choice<CameraKind>{"spherical", CameraKind::kSpherical}};
   CameraOptions camera;
+  camera.kind = parse_choice(options.camera, "--camera", kKinds);
   const PictureSize size = parse_size(options.size, "--size");
   check_memory(pixel_window(film.crop, size.width, size.height), film);
   camera.width = size.width;
@@ -177,6 +205,44 @@ CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
 }
 
 UpAxis read_up(const PictureOptions& options) { return parse_choice(options.up, "--up", kUpAxes); }
+
+std::optional<Ground> read_ground(const PictureOptions& options) {
+  if (options.ground.empty()) return std::nullopt;
+  const std::vector<double> numbers = parse_numbers(options.ground, "--ground");
+  if (numbers.size() > 4) {
+    fail("--ground: '{}' is not ALBEDO[,HEIGHT] or R,G,B[,HEIGHT]", options.ground);
+  }
+  Ground ground;
+  ground.up = read_up(options);
+  const bool is_coloured = numbers.size() > 2;
+  ground.albedo = is_coloured ? spectrum_of(numbers, 0) : Spectrum(static_cast<float>(numbers[0]));
+  if (numbers.size() % 2 == 0) ground.height = numbers.back();
+  return ground;
+}
+
+BuildOptions read_build_options(const CLI::App& command, const PictureOptions& options,
+                                std::vector<std::string>& warnings) {
+  BuildOptions build{.invalid = read_invalid(options.volumes)};
+  build.super_voxel = options.super_voxel;
+  build.ground = read_ground(options);
+  const bool has_environment = command.count("--environment") > 0;
+  if (has_environment || command.count("--sun") > 0) {
+    build.surroundings = make_surroundings(read_lights(options), read_up(options), &warnings);
+    if (!has_environment) build.surroundings.environment.reset();
+  }
+  // Read as those of a volume alone are.
+  VolumeOptions medium;
+  medium.files = {options.volumes.files.front()};
+  medium.sigma_a = options.volumes.sigma_a;
+  medium.sigma_s = options.volumes.sigma_s;
+  medium.g = options.volumes.g;
+  medium.phase = options.volumes.phase;
+  const OpticalProperties optics = plan_volumes(medium).front().optics;
+  build.sigma_a = optics.sigma_a;
+  build.sigma_s = optics.sigma_s;
+  if (!medium.g.empty() || !medium.phase.empty()) build.phase = optics.phase;
+  return build;
+}
 
 ColorMode read_color(const PictureOptions& options, ColorMode usual) {
   constexpr std::array kColors{Choice<ColorMode>{"rgb", ColorMode::kRgb},
@@ -230,11 +296,9 @@ bool is_scene(const PictureOptions& options) {
 }
 
 void check_scene_options(const CLI::App& command, const PictureOptions& options) {
-  constexpr const char* kOfVolumes[] = {
-      "--grid",   "--density-scale", "--albedo",  "--sigma-a",  "--sigma-s",
-      "--g",      "--phase",         "--le",      "--negative", "--environment",
-      "--sun",    "--turbidity",     "--look-at", "--fov",      "--up",
-      "--frames", "--super-voxel"};
+  constexpr const char* kOfVolumes[] = {"--grid", "--density-scale", "--albedo",
+                                        "--le",   "--negative",      "--look-at",
+                                        "--fov",  "--camera",        "--frames"};
   for (const char* name : kOfVolumes) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option != nullptr && option->count() > 0) {

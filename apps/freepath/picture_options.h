@@ -2,6 +2,7 @@
 /// @file Options on what a picture is of, for the commands that make pictures.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,8 @@
 #include "apps/freepath/render_volumes.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/renderer.h"
+#include "freepath/scene/assembly/build_context.h"
+#include "freepath/scene/volume_camera.h"
 #include "freepath/scene/volume_scene.h"
 
 namespace freepath::program {
@@ -24,7 +27,7 @@ struct PictureOptions {
   std::string environment, sun;
   int wavelengths = RenderSettings{}.wavelengths;
   double turbidity = SunParameters{}.turbidity;
-  std::string up = "y", look_at;
+  std::string up = "y", look_at, camera = "perspective", ground;
   double fov = CameraOptions{}.fov;
   int super_voxel = 0;
   std::string absorption = "weighted";
@@ -51,6 +54,12 @@ LightOptions read_lights(const PictureOptions& options);
 /// @throws Error, too, for a picture that memory can't hold
 CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film);
 UpAxis read_up(const PictureOptions& options);
+/// None where none is asked for.
+std::optional<Ground> read_ground(const PictureOptions& options);
+/// What the options say of a scene, whose file says the rest.
+/// @param warnings gets what there is to say about an image
+BuildOptions read_build_options(const CLI::App& command, const PictureOptions& options,
+                                std::vector<std::string>& warnings);
 /// @param usual the mode where none is given
 ColorMode read_color(const PictureOptions& options, ColorMode usual);
 Interpolation read_interpolation(const std::string& text);

@@ -107,8 +107,13 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
   plan.settings = read_settings(options);
   plan.look = read_look(options, ViewTransform::kStandard);
   plan.film = read_film_options(options.film);
-  plan.invalid = read_invalid(options.picture.volumes);
-  if (given("--size")) plan.size = parse_size(options.picture.size, "--size");
+  std::vector<std::string> warnings;
+  plan.build = read_build_options(command, options.picture, warnings);
+  for (const std::string& warning : warnings) warn("{}", warning);
+  if (given("--size")) {
+    const PictureSize size = parse_size(options.picture.size, "--size");
+    plan.build.size = FilmSize{size.width, size.height};
+  }
   if (given("--spp")) plan.samples = options.samples;
   if (given("--seed")) plan.seed = options.picture.seed;
   if (given("--max-scatterings")) plan.max_scatterings = options.picture.max_scatterings;
@@ -140,6 +145,7 @@ void run(const CLI::App& command, const RenderOptions& options) {
       .film = film,
       .camera = read_camera(options.picture, film),
       .up = up,
+      .ground = read_ground(options.picture),
       .surroundings = make_surroundings(read_lights(options.picture), up, &warnings),
       .color = read_color(options.picture, ColorMode::kRgb),
       .super_voxel = options.picture.super_voxel,

@@ -38,17 +38,31 @@ VolumeMedium load_medium(const RenderPlan& plan, const PictureFiles& files, Rend
   return medium;
 }
 
-/// The camera of a sequence: framed from its first frame that holds something, whose volumes are
+/// What stays the same in a sequence.
+struct Stage {
+  Camera camera;
+  std::optional<Ground> ground;
+};
+
+Stage make_stage(const RenderPlan& plan, const Medium& medium) {
+  Stage stage{make_camera(medium, plan.camera, plan.up), plan.ground};
+  if (stage.ground && !stage.ground->height) {
+    stage.ground->height = medium.world_bounds().min[plan.up == UpAxis::kY ? 1 : 2];
+  }
+  return stage;
+}
+
+/// The stage of a sequence: framed from its first frame that holds something, whose volumes are
 /// loaded for that where it is not this one.
-Camera frame_sequence(const RenderPlan& plan, std::span<const PictureFiles> frames,
-                      const Medium& first) {
-  const bool framed = !plan.camera.from;
+Stage frame_sequence(const RenderPlan& plan, std::span<const PictureFiles> frames,
+                     const Medium& first) {
+  const bool framed = !plan.camera.from || (plan.ground && !plan.ground->height);
   for (std::size_t i = 1; framed && is_empty(first) && i < frames.size(); ++i) {
     RenderReport ignored;
     const VolumeMedium loaded = load_medium(plan, frames[i], ignored);
-    if (!is_empty(*loaded.medium)) return make_camera(*loaded.medium, plan.camera, plan.up);
+    if (!is_empty(*loaded.medium)) return make_stage(plan, *loaded.medium);
   }
-  return make_camera(first, plan.camera, plan.up);
+  return make_stage(plan, first);
 }
 
 /// The tracker to walk with, after saying what users must know of it.
@@ -69,7 +83,7 @@ std::string settle_tracker(const std::string& tracker, const Medium& medium,
 /// Renders until it is done or the stop is wished, and writes what there is.
 /// @param tracker for the medium: that of the plan may be automatic
 RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
-                              const VolumeMedium& medium, const Camera& camera,
+                              const VolumeMedium& medium, const Stage& stage,
                               const std::string& tracker, const StopOnInterrupt& stop,
                               RenderReport& report) {
   report.settings = plan.settings;
@@ -81,9 +95,10 @@ RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
   settings.crop = plan.film.crop;
   PictureFilesAside aside(files.outputs, files.stats);
   const auto display = show_passes(plan.film, files.outputs.front(), settings);
-  const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
+  const PixelWindow window =
+      pixel_window(settings.crop, stage.camera.width(), stage.camera.height());
   const ProgressBar bar(std::size_t(window.width) * window.height, settings.time_limit);
-  const PathScene scene = make_volume_scene(medium, camera, plan.surroundings);
+  const PathScene scene = make_volume_scene(medium, stage.camera, plan.surroundings, stage.ground);
   RenderResult result =
       render_scene(scene, plan.color, settings, [&](const RenderProgress& progress) {
         bar.show(progress);
@@ -135,17 +150,17 @@ void render_picture(const RenderPlan& plan, const PictureFiles& files) {
   RenderReport report;
   const VolumeMedium medium = load_medium(plan, files, report);
   Stopwatch watch;
-  const Camera camera = make_camera(*medium.medium, plan.camera, plan.up);
+  const Stage stage = make_stage(plan, *medium.medium);
   const std::string tracker = settle_tracker(plan.settings.walk.tracker, *medium.medium);
   report.seconds_build += watch.lap();
   const StopOnInterrupt stop;
-  const RenderResult result = render_and_write(plan, files, medium, camera, tracker, stop, report);
+  const RenderResult result = render_and_write(plan, files, medium, stage, tracker, stop, report);
   print_summary(files.outputs, result, report);
 }
 
 void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& frames) {
   const StopOnInterrupt stop;
-  std::optional<Camera> camera;
+  std::optional<Stage> stage;
   std::string tracker;
   std::size_t done = 0;
   for (std::size_t i = 0; i < frames.size() && !stop.requested(); ++i) {
@@ -154,7 +169,7 @@ void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& fram
       RenderReport report;
       const VolumeMedium medium = load_medium(plan, files, report);
       Stopwatch watch;
-      if (!camera) camera = frame_sequence(plan, std::span(frames).subspan(i), *medium.medium);
+      if (!stage) stage = frame_sequence(plan, std::span(frames).subspan(i), *medium.medium);
       tracker = settle_tracker(plan.settings.walk.tracker, *medium.medium, tracker);
       report.seconds_build += watch.lap();
       if (stop.requested()) {
@@ -162,7 +177,7 @@ void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& fram
         fail("interrupted before it was rendered: nothing is written; wait longer");
       }
       const RenderResult result =
-          render_and_write(plan, files, medium, *camera, tracker, stop, report);
+          render_and_write(plan, files, medium, *stage, tracker, stop, report);
       print_frame(i, frames.size(), files, result, report);
       if (!result.interrupted) ++done;
     } catch (const Error& error) {

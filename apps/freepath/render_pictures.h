@@ -1,11 +1,13 @@
 #pragma once
 /// @file Rendering what the options ask for: one picture, or the frames of a sequence.
 
+#include <optional>
 #include <vector>
 
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/frames.h"
 #include "apps/freepath/render_volumes.h"
+#include "freepath/scene/volume_camera.h"
 #include "freepath/scene/volume_scene.h"
 
 namespace freepath::program {
@@ -17,6 +19,7 @@ struct RenderPlan {
   FilmPlan film;
   CameraOptions camera;
   UpAxis up = UpAxis::kY;
+  std::optional<Ground> ground;  ///< Without a height, that of the first frame.
   Surroundings surroundings;
   ColorMode color = ColorMode::kRgb;
   int super_voxel = 0;

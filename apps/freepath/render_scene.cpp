@@ -66,9 +66,7 @@ void render_scene_file(const ScenePlan& plan) {
   RenderReport report;
   Stopwatch watch;
   Diagnostics diagnostics;
-  BuildOptions options{.invalid = plan.invalid};
-  if (plan.size) options.size = FilmSize{plan.size->width, plan.size->height};
-  BuiltScene built = load_scene(plan.file, diagnostics, options);
+  BuiltScene built = load_scene(plan.file, diagnostics, plan.build);
   for (const std::string& warning : diagnostics.warnings()) {
     warn("{}", warning);
   }

@@ -19,7 +19,6 @@ struct ScenePlan {
   std::string file;
   std::vector<std::string> outputs;  ///< None: the film's file name.
   std::string stats;                 ///< May be empty.
-  std::optional<PictureSize> size;
   std::optional<uint32_t> samples;
   std::optional<uint64_t> seed;
   std::optional<uint32_t> max_scatterings;
@@ -27,7 +26,7 @@ struct ScenePlan {
   std::optional<Interpolation> interpolation;
   ColorMode color = ColorMode::kSpectral;
   RenderSettings settings;  ///< All else.
-  InvalidPolicy invalid = InvalidPolicy::kZero;
+  BuildOptions build;
   PictureLook look;
   FilmPlan film;  ///< Its crop goes before the scene's.
 };

@@ -11,6 +11,7 @@
 #include "freepath/io/content_digest.h"
 #include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/paths/renderer.h"
+#include "freepath/scene/volume_scene.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
@@ -96,7 +97,9 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
       options, command.count("--wavelengths") > 0 ? ColorMode::kSpectral : ColorMode::kRgb);
   check_wavelengths(command, plan.color);
   if (command.count("--max-scatterings") > 0) plan.max_scatterings = options.max_scatterings;
-  BuildOptions build{.invalid = read_invalid(options.volumes)};
+  std::vector<std::string> warnings;
+  BuildOptions build = read_build_options(command, options, warnings);
+  for (const std::string& warning : warnings) warn("{}", warning);
   if (size) {
     build.size = FilmSize{size->width, size->height};
   } else if (command.count("--size") > 0) {
@@ -154,10 +157,11 @@ LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volu
   subject.name = names_of(options.volumes.files);
   subject.width = size.width;
   subject.height = size.height;
-  set_renderers(subject,
-                std::make_shared<PathScene>(make_volume_scene(
-                    volumes, make_camera(medium, camera_options, up), surroundings)),
-                read_color(options, ColorMode::kRgb));
+  set_renderers(
+      subject,
+      std::make_shared<PathScene>(make_volume_scene(
+          volumes, make_camera(medium, camera_options, up), surroundings, read_ground(options))),
+      read_color(options, ColorMode::kRgb));
   loaded.volumes = std::move(volumes);
   return loaded;
 }

@@ -63,7 +63,8 @@ class ImageEnvironment {
   /// @throws Error that names the pixel, if a value is negative, infinite or NaN
   ImageEnvironment(const Image& image, UpAxis up, const std::string& name);
 
-  LightValue evaluate(const Vec3f& direction) const {
+  /// Inline, since a call would cost a tenth of it.
+  [[gnu::always_inline]] LightValue evaluate(const Vec3f& direction) const {
     const LatLong position = lat_long(direction, up_);
     const float x = position.u * static_cast<float>(width_);
     const float y = position.v * static_cast<float>(height_);

@@ -133,8 +133,29 @@ void InfiniteLights::finish() {
   }
 }
 
-LightSeen InfiniteLights::evaluate(const Light& light, const Vec3f& from, const Vec3f& direction,
-                                   const SpectrumValues& values) const {
+Channels InfiniteLights::plain_radiance(const Light& light, const Vec3f& towards,
+                                        const SpectrumValues& values, float& pdf) {
+  if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
+    const LightValue value = image->evaluate(towards);
+    pdf = value.pdf;
+    return values.illuminant(colour_of(value.radiance)) * light.scale;
+  }
+  if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
+    if (!sun->contains(towards)) return {};
+    pdf = sun->pdf();
+    return values.illuminant(colour_of(sun->radiance())) * light.scale;
+  }
+  if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
+    pdf = kUniformSpherePdf;
+    return values[constant->radiance] * light.scale;
+  }
+  const LightValue value = std::get_if<OctahedralEnvironment>(&light.radiance)->evaluate(towards);
+  pdf = value.pdf;
+  return values.illuminant(colour_of(value.radiance)) * light.scale;
+}
+
+LightSeen InfiniteLights::evaluate_framed(const Light& light, const Vec3f& from,
+                                          const Vec3f& direction, const SpectrumValues& values) {
   float portal_pdf = 0;
   if (light.portal) {
     portal_pdf = light.portal->pdf(from, direction);
@@ -149,20 +170,8 @@ LightSeen InfiniteLights::evaluate(const Light& light, const Vec3f& from, const 
     solid_angle = light.frame->light_solid_angle(length);
   }
   LightSeen seen;
-  if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
-    seen = {values[constant->radiance] * light.scale, kUniformSpherePdf};
-  } else if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
-    if (sun->contains(towards)) {
-      seen = {values.illuminant(colour_of(sun->radiance())) * light.scale, sun->pdf()};
-    }
-  } else {
-    const auto* const octahedral = std::get_if<OctahedralEnvironment>(&light.radiance);
-    const LightValue value =
-        octahedral ? octahedral->evaluate(towards)
-                   : std::get_if<ImageEnvironment>(&light.radiance)->evaluate(towards);
-    seen = {values.illuminant(colour_of(value.radiance)) * light.scale, value.pdf * solid_angle};
-  }
-  if (light.portal) seen.pdf = portal_pdf;
+  seen.radiance = plain_radiance(light, towards, values, seen.pdf);
+  seen.pdf = light.portal ? portal_pdf : seen.pdf * solid_angle;
   return seen;
 }
 
@@ -170,9 +179,15 @@ LightSeen InfiniteLights::evaluate(const Vec3f& from, const Vec3f& direction,
                                    const SpectrumValues& values) const {
   LightSeen all;
   for (const Light& light : lights_) {
-    const LightSeen seen = evaluate(light, from, direction, values);
-    all.radiance += seen.radiance;
-    all.pdf += light.share * seen.pdf;
+    if (light.portal || light.frame) {
+      const LightSeen seen = evaluate_framed(light, from, direction, values);
+      all.radiance += seen.radiance;
+      all.pdf += light.share * seen.pdf;
+      continue;
+    }
+    float pdf = 0;
+    all.radiance += plain_radiance(light, direction, values, pdf);
+    all.pdf += light.share * pdf;
   }
   return all;
 }

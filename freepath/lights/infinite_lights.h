@@ -62,8 +62,12 @@ class InfiniteLights {
     bool is_drawn() const { return portal || !std::holds_alternative<Constant>(radiance); }
   };
 
-  LightSeen evaluate(const Light& light, const Vec3f& from, const Vec3f& direction,
-                     const SpectrumValues& values) const;
+  /// Of a light as if it had neither frame nor portal.
+  /// @param pdf set to the density of drawing the direction, if there is any [1/sr]
+  static Channels plain_radiance(const Light& light, const Vec3f& towards,
+                                 const SpectrumValues& values, float& pdf);
+  static LightSeen evaluate_framed(const Light& light, const Vec3f& from, const Vec3f& direction,
+                                   const SpectrumValues& values);
   static Vec3f sample_world(const Light& light, float u0, float u1);
 
   std::vector<Light> lights_;

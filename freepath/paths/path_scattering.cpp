@@ -26,7 +26,7 @@ const SpectrumValues& PathWavefront::light_spectra(const ScenePath& path, bool i
 void PathWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
   path.origin = origin;
   path.direction = direction;
-  path.hit.reset();
+  path.ends_at_surface = false;
   path.surfaces_known = false;
   path.emission_share = 1;
   ++path.flights;
@@ -57,7 +57,7 @@ std::optional<SurfaceHit> PathWavefront::first_there(const ScenePath& path) {
     return scene_.shapes[tied.shape].alpha &&
            !is_there(surfaces.describe(path.origin, path.direction, tied));
   };
-  SurfaceHit hit = *path.hit;
+  SurfaceHit hit = hit_of(path);
   while (true) {
     ties_.clear();
     if (hit.is_tied) surfaces.find_ties(path.origin, path.direction, hit, ties_);
@@ -70,7 +70,7 @@ std::optional<SurfaceHit> PathWavefront::first_there(const ScenePath& path) {
 
 std::optional<SurfaceHit> PathWavefront::choose_surface(const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
-  SurfaceHit hit = *path.hit;
+  SurfaceHit hit = hit_of(path);
   if (has_alpha_) {
     const std::optional<SurfaceHit> there = first_there(path);
     if (!there) return std::nullopt;
@@ -146,8 +146,9 @@ LightDraw PathWavefront::draw_light(const Vec3f& position, const SpectrumValues&
 }
 
 void PathWavefront::pass_hole(ScenePath& path) {
-  if (path.scatterings == 0) path.distance += path.hit->t;
-  go_on(path, scene_.surfaces->offset_ray_origin(path.hit->point, path.direction), path.direction);
+  const SurfaceHit& hit = hit_of(path);
+  if (path.scatterings == 0) path.distance += hit.t;
+  go_on(path, scene_.surfaces->offset_ray_origin(hit.point, path.direction), path.direction);
 }
 
 void PathWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
@@ -243,7 +244,7 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
       const Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
       if (!is_black(radiance)) {
         const Departure departure = depart(path, hit, light.direction);
-        shadows_.add(static_cast<uint32_t>(slot), departure.origin, light.direction,
+        shadows_.add(static_cast<uint32_t>(slot), path, departure.origin, light.direction,
                      shadow_end(light), departure.place, radiance, false);
       }
     }
@@ -295,8 +296,8 @@ void PathWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t com
       const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
       const Channels radiance = light_throughput(path, in_rgb) * light.radiance * share;
       if (!is_black(radiance)) {
-        shadows_.add(static_cast<uint32_t>(slot), position, light.direction, shadow_end(light),
-                     path.place, radiance, in_rgb);
+        shadows_.add(static_cast<uint32_t>(slot), path, position, light.direction,
+                     shadow_end(light), path.place, radiance, in_rgb);
       }
     }
   }

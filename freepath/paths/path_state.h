@@ -2,15 +2,12 @@
 /// @file A path in flight.
 
 #include <cstdint>
-#include <optional>
 
 #include "freepath/base/channels.h"
 #include "freepath/base/vector.h"
-#include "freepath/geometry/surfaces.h"
 #include "freepath/paths/media_places.h"
 #include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_scene.h"
-#include "freepath/sensors/film.h"
 
 namespace freepath {
 
@@ -18,11 +15,10 @@ namespace freepath {
 struct ScenePath {
   Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
   Vec3f direction{0};  ///< Of its ray, unit [world].
-  /// Where the ray ends at a surface, once that is known.
-  std::optional<SurfaceHit> hit;
   bool surfaces_known = false;
-  PlaceId place = 0;          ///< Which media are around: MediaPlaces.
-  MediumId medium = kVacuum;  ///< What they are together.
+  bool ends_at_surface = false;  ///< Once that is known.
+  PlaceId place = 0;             ///< Which media are around: MediaPlaces.
+  MediumId medium = kVacuum;     ///< What they are together.
 
   const PathColors* colors = nullptr;
   Channels throughput;
@@ -53,7 +49,6 @@ struct ScenePath {
   int channel = -1;     ///< The one channel that it carries, or -1.
   uint64_t lookups = 0;
   float distance = 0;  ///< Flown from the camera, until the first event [world].
-  PathSample sample;   ///< What else the film records of it.
 };
 
 }  // namespace freepath

@@ -16,7 +16,11 @@ constexpr uint32_t kLensDimension = 1;
 
 Spectrum to_spectrum(const Vec3f& rgb) { return {rgb.x, rgb.y, rgb.z}; }
 
-float mean(const Channels& values, int channels) {
+/// The mean over the channels that a path carries.
+float carried_mean(const ScenePath& path, const Channels& values) {
+  // A path of one channel is the only one to see it.
+  if (path.channel >= 0) return values[path.channel];
+  const int channels = path.colors->spectra.channels();
   float sum = 0;
   for (int c = 0; c < channels; ++c) sum += values[c];
   return sum / static_cast<float>(channels);
@@ -32,6 +36,15 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       batches_(setup.slots, true),
       shadows_(*setup.scene, places_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
+  if (scene_.surfaces) hits_.resize(setup.slots);
+  if (!scene_.surfaces && scene_.media.size() == 1) {
+    const Box3d box = scene_.media[0].outer_bounds();
+    everything_ = Box3f(Vec3f(box.min - scene_.origin), Vec3f(box.max - scene_.origin));
+    const Vec3f rounding = everything_->size() * 1e-4F;
+    everything_->min -= rounding;
+    everything_->max += rounding;
+  }
+  is_balanced_ = scene_.white_balance == Imath::M33f();
   camera_place_ = places_.of(scene_.camera_media);
   for (uint32_t shape = 0; shape < scene_.shapes.size(); ++shape) {
     has_alpha_ = has_alpha_ || scene_.shapes[shape].alpha;
@@ -50,7 +63,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   active_ = next_path_ = paths_of_newest_ = 0;
   has_more_jobs_ = true;
   while (true) {
-    start_paths(jobs, film);
+    while (active_ < setup_.slots && fill(active_, jobs, film)) ++active_;
     if (active_ == 0) return true;
     if (scope.stopped() || jobs.stop()) return false;
     fly();
@@ -61,31 +74,64 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   }
 }
 
-bool PathWavefront::trace(const PathJob& job, Film& film) {
+bool PathWavefront::trace(const PathJob& job, Film& film, const std::function<bool()>& stop) {
   bool is_taken = false;
   PathJobSource jobs;
   jobs.next = [&]() -> std::optional<PathJob> {
     if (std::exchange(is_taken, true)) return std::nullopt;
     return job;
   };
+  if (stop) jobs.stop = stop;
   return trace(jobs, film);
 }
 
-void PathWavefront::start_paths(const PathJobSource& jobs, const Film& film) {
-  while (active_ < setup_.slots) {
-    if (next_path_ == paths_of_newest_) {
-      const bool may_begin = jobs_.is_empty() || (jobs.overlaps && jobs_.has_room());
-      if (!has_more_jobs_ || !may_begin) return;
-      const std::optional<PathJob> job = jobs.next();
-      has_more_jobs_ = job.has_value();
-      if (!job) return;
-      newest_ = jobs_.open(*job, film);
-      next_path_ = 0;
-      paths_of_newest_ = jobs_[newest_].paths;
-      set_order(*job);
-    }
-    start_path(next_path_++, paths_[active_++]);
+bool PathWavefront::has_next_path(const PathJobSource& jobs, const Film& film) {
+  if (next_path_ < paths_of_newest_) return true;
+  const bool may_begin = jobs_.is_empty() || (jobs.overlaps && jobs_.has_room());
+  if (!has_more_jobs_ || !may_begin) return false;
+  const std::optional<PathJob> job = jobs.next();
+  has_more_jobs_ = job.has_value();
+  if (!job) return false;
+  newest_ = jobs_.open(*job, film);
+  next_path_ = 0;
+  paths_of_newest_ = jobs_[newest_].paths;
+  set_order(*job);
+  return true;
+}
+
+bool PathWavefront::misses_everything(const ScenePath& path) const {
+  if (!everything_) return false;
+  float begin = 0;
+  float end = std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const float inverse = 1 / path.direction[axis];
+    const float a = (everything_->min[axis] - path.origin[axis]) * inverse;
+    const float b = (everything_->max[axis] - path.origin[axis]) * inverse;
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
   }
+  return begin > end;
+}
+
+bool PathWavefront::fill(std::size_t slot, const PathJobSource& jobs, Film& film) {
+  while (has_next_path(jobs, film)) {
+    ScenePath& path = paths_[slot];
+    start_path(next_path_++, path);
+    if (!misses_everything(path)) return true;
+    escape(path);
+    end_path(path, jobs, film);
+  }
+  return false;
+}
+
+void PathWavefront::end_path(ScenePath& path, const PathJobSource& jobs, Film& film) {
+  finish(path);
+  OpenJobs::Job& job = jobs_[path.job];
+  if (--job.paths_left > 0) return;
+  add_to_film(job, film);
+  counts_.merge(job.counts);
+  jobs.finished(job.job);
+  jobs_.close(path.job);
 }
 
 void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
@@ -94,14 +140,13 @@ void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
       ++slot;
       continue;
     }
-    finish(paths_[slot]);
-    const uint32_t number = paths_[slot].job;
-    paths_[slot] = std::move(paths_[--active_]);
-    if (--jobs_[number].paths_left > 0) continue;
-    add_to_film(jobs_[number], film);
-    counts_.merge(jobs_[number].counts);
-    jobs.finished(jobs_[number].job);
-    jobs_.close(number);
+    end_path(paths_[slot], jobs, film);
+    // Paths stay where they are, but for the last ones, which close ranks.
+    if (fill(slot, jobs, film)) {
+      ++slot;
+    } else {
+      paths_[slot] = paths_[--active_];
+    }
   }
 }
 
@@ -114,9 +159,8 @@ void PathWavefront::set_order(const PathJob& job) {
   begin_of_set_.assign(setup_.colors.size() + 1, 0);
   sets_.resize(total);
   for (std::size_t i = 0; i < total; ++i) {
-    const auto pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + i / job.samples));
-    const uint32_t sample = job.first_sample + static_cast<uint32_t>(i % job.samples);
-    sets_[i] = setup_.factory->set_of(pixel, sample) - setup_.first_set;
+    const SamplePlace place = place_of(job, i);
+    sets_[i] = setup_.factory->set_of(place.pixel, place.sample) - setup_.first_set;
     ++begin_of_set_[sets_[i] + 1];
   }
   std::partial_sum(begin_of_set_.begin(), begin_of_set_.end(), begin_of_set_.begin());
@@ -125,19 +169,23 @@ void PathWavefront::set_order(const PathJob& job) {
   }
 }
 
-void PathWavefront::start_path(std::size_t number, ScenePath& path) {
-  const PathJob& job = jobs_[newest_].job;
+PathWavefront::SamplePlace PathWavefront::place_of(const PathJob& job, std::size_t number) const {
+  const auto place = static_cast<uint32_t>(number);  // whose divisions take a third of the time
+  return {window_.in_picture(job.first_pixel + place / job.samples),
+          job.first_sample + place % job.samples};
+}
+
+void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   path = {};
   path.job = newest_;
-  const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
-  const std::size_t place = order_[number / per_sample];
+  const auto number = static_cast<uint32_t>(path_number);
+  const auto per_sample = static_cast<uint32_t>(setup_.factory->paths_per_sample());
+  const uint32_t ordered = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
-  const std::size_t pixel = place / job.samples;
-  const auto sample = static_cast<uint32_t>(place % job.samples);
-  path.result = static_cast<uint32_t>(jobs_[newest_].first + place * per_sample) + channel;
-  path.pixel = static_cast<uint32_t>(window_.in_picture(job.first_pixel + pixel));
-  const uint32_t sample_number = job.first_sample + sample;
-  path.sample_key = sample_number * static_cast<uint32_t>(per_sample) + channel;
+  const auto [picture_pixel, sample_number] = place_of(jobs_[newest_].job, ordered);
+  path.result = static_cast<uint32_t>(jobs_[newest_].first + ordered * per_sample) + channel;
+  path.pixel = picture_pixel;
+  path.sample_key = sample_number * per_sample + channel;
   // The paths of a sample start one after the other.
   if (channel == 0) colors_of_sample_ = &colors_of(path.pixel, sample_number);
   path.colors = colors_of_sample_;
@@ -154,9 +202,9 @@ void PathWavefront::start_path(std::size_t number, ScenePath& path) {
   const SampleSequence numbers(scene_.samples, setup_.seed, path.pixel, sample_number);
   const auto film = numbers.pair(kFilmDimension);
   const FilterSample filtered = scene_.filter.sample(film[0], film[1]);
-  const auto width = static_cast<std::size_t>(scene_.camera->width());
+  const auto width = static_cast<uint32_t>(scene_.camera->width());
   const float x = static_cast<float>(path.pixel % width) + 0.5F + filtered.x;
-  const std::size_t row = path.pixel / width;
+  const uint32_t row = path.pixel / width;
   const float y = static_cast<float>(row) + 0.5F + filtered.y;
   std::array<float, 2> lens{};
   if (scene_.camera->has_lens()) lens = numbers.pair(kLensDimension);
@@ -165,7 +213,8 @@ void PathWavefront::start_path(std::size_t number, ScenePath& path) {
   path.origin = path.turned_at = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;
   set_place(path, camera_place_);
-  if (per_sample == 1) {
+  // Media choose heroes of their own.
+  if (per_sample == 1 && scene_.surfaces) {
     RandomStream random(setup_.seed, path.pixel, path.sample_key,
                         stream_number(StreamPurpose::kCamera, 0));
     path.hero =
@@ -178,12 +227,13 @@ bool PathWavefront::needs_surfaces_first(const ScenePath& path) const {
   return !scene_.is_clear_at(path.medium, path.origin);
 }
 
-void PathWavefront::find_surface(ScenePath& path) const {
+void PathWavefront::find_surface(ScenePath& path) {
   path.surfaces_known = true;
-  if (scene_.surfaces) {
-    path.hit = scene_.surfaces->intersect(path.origin, path.direction, 0,
-                                          std::numeric_limits<float>::infinity());
-  }
+  if (!scene_.surfaces) return;
+  const auto hit = scene_.surfaces->intersect(path.origin, path.direction, 0,
+                                              std::numeric_limits<float>::infinity());
+  path.ends_at_surface = hit.has_value();
+  if (hit) hit_of(path) = *hit;
 }
 
 void PathWavefront::fly() {
@@ -199,7 +249,7 @@ void PathWavefront::fly() {
     auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(slot));
     RayStream& rays = batch.rays;
     set_ray(rays, i, path.origin, path.direction,
-            path.hit ? path.hit->t : std::numeric_limits<float>::infinity());
+            path.ends_at_surface ? hit_of(path).t : std::numeric_limits<float>::infinity());
     rays.pixel[i] = path.pixel;
     rays.sample[i] = path.sample_key;
     rays.stream[i] = stream_number(StreamPurpose::kWalk, path.flights);
@@ -220,7 +270,7 @@ void PathWavefront::fly() {
 void PathWavefront::fly_in_vacuum(std::size_t slot) {
   ScenePath& path = paths_[slot];
   if (!path.surfaces_known) find_surface(path);
-  if (path.hit) {
+  if (path.ends_at_surface) {
     meet_surface(slot);
   } else {
     escape(path);
@@ -262,7 +312,7 @@ void PathWavefront::take_flight(std::size_t slot, const Walker& walker, std::siz
       break;
   }
   if (!path.surfaces_known) find_surface(path);
-  if (path.hit) {
+  if (path.ends_at_surface) {
     meet_surface(slot);
   } else {
     escape(path);
@@ -272,7 +322,7 @@ void PathWavefront::take_flight(std::size_t slot, const Walker& walker, std::siz
 void PathWavefront::escape(ScenePath& path) {
   path.is_dead = true;
   if (path.scatterings == 0) {
-    path.sample.alpha = 1 - carried_mean(path, path.throughput);
+    result_of(path).alpha = 1 - carried_mean(path, path.throughput);
     if (jobs_.layers.on()) jobs_.layers.transmittance(path.result, transmittance_of(path));
   }
   const bool in_rgb = sees_rgb(path);
@@ -309,27 +359,27 @@ void PathWavefront::record_medium_event(ScenePath& path, float t,
                -path.direction);
 }
 
-float PathWavefront::carried_mean(const ScenePath& path, const Channels& values) {
-  // A path of one channel is the only one to see it.
-  return path.channel < 0 ? mean(values, path.colors->spectra.channels()) : values[path.channel];
-}
-
 void PathWavefront::record_event(ScenePath& path, float t, const Channels& weight,
                                  const Channels& albedo, const Vec3f& normal) {
-  path.sample.alpha = 1;
-  path.sample.albedo = {albedo[0], albedo[1], albedo[2]};
-  path.sample.depth = path.distance + t;
-  path.sample.depth_weight = carried_mean(path, weight);
+  PathSample& sample = result_of(path);
+  sample.alpha = 1;
+  sample.albedo = {albedo[0], albedo[1], albedo[2]};
+  sample.depth = path.distance + t;
+  sample.depth_weight = carried_mean(path, weight);
   if (!jobs_.layers.on()) return;
   const Vec3f position = path.origin + path.direction * t + Vec3f(scene_.origin);
-  jobs_.layers.event(
-      path.result, normal, position,
-      path.sample.depth_weight / static_cast<float>(setup_.factory->paths_per_sample()));
+  jobs_.layers.event(path.result, normal, position,
+                     sample.depth_weight / static_cast<float>(setup_.factory->paths_per_sample()));
 }
 
 Spectrum PathWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
                                const Channels& rgb) const {
-  const Vec3f sum = path.colors->spectra.to_rgb(radiance) + Vec3f(rgb[0], rgb[1], rgb[2]);
+  const SpectrumValues& spectra = path.colors->spectra;
+  if (is_balanced_ && !spectra.is_spectral()) {
+    const Channels sum = radiance + rgb;
+    return Spectrum(sum[0], sum[1], sum[2]) * scene_.exposure_scale;
+  }
+  const Vec3f sum = spectra.to_rgb(radiance) + Vec3f(rgb[0], rgb[1], rgb[2]);
   return to_spectrum(sum * scene_.white_balance * scene_.exposure_scale);
 }
 
@@ -341,21 +391,19 @@ Spectrum PathWavefront::transmittance_of(const ScenePath& path) const {
 }
 
 void PathWavefront::finish(ScenePath& path) {
-  PathSample& sample = jobs_.results[path.result];
-  sample.lookups = static_cast<float>(path.lookups);
-  if (!is_finite(path.radiance) || !is_finite(path.rgb) || !std::isfinite(path.sample.alpha) ||
-      !std::isfinite(path.sample.depth_weight)) {
+  PathSample& sample = result_of(path);
+  if (!is_finite(path.radiance) || !is_finite(path.rgb) || !std::isfinite(sample.alpha) ||
+      !std::isfinite(sample.depth_weight)) {
     ++jobs_[path.job].counts.overflows;
+    sample = {};
     sample.overflowed = true;
+    sample.lookups = static_cast<float>(path.lookups);
     return;
   }
+  sample.lookups = static_cast<float>(path.lookups);
   sample.radiance = rgb_of(path, path.radiance, path.rgb);
   if (records_spectra_) jobs_.spectra[path.result] = path.radiance;
   if (jobs_.layers.on()) jobs_.layers.end(path.result, path.scatterings, sample.radiance);
-  sample.alpha = path.sample.alpha;
-  sample.albedo = path.sample.albedo;
-  sample.depth = path.sample.depth;
-  sample.depth_weight = path.sample.depth_weight;
 }
 
 void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const {
@@ -365,10 +413,8 @@ void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, 
   for (std::size_t c = 0; c < per_sample; ++c) {
     radiance += jobs_.spectra[done.first + sample * per_sample + c];
   }
-  const uint32_t number = job.first_sample + static_cast<uint32_t>(sample % job.samples);
-  const auto pixel =
-      static_cast<uint32_t>(window_.in_picture(job.first_pixel + sample / job.samples));
-  const SpectrumValues& values = colors_of(pixel, number).spectra;
+  const SamplePlace place = place_of(job, sample);
+  const SpectrumValues& values = colors_of(place.pixel, place.sample).spectra;
   // In the light's units, which the colour matching of our observer takes out.
   constexpr auto kLightUnit = static_cast<float>(1 / kLuminousIntegral);
   film.add_spectrum(job.first_pixel + sample / job.samples,

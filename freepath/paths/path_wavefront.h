@@ -54,19 +54,33 @@ class PathWavefront {
   /// @return false if they were stopped
   bool trace(const PathJobSource& jobs, Film& film);
   /// Traces one job.
-  bool trace(const PathJob& job, Film& film);
+  bool trace(const PathJob& job, Film& film, const std::function<bool()>& stop = {});
 
   /// Counts over all jobs that were finished; those of walks over dropped ones too.
   const PathCounts& counts() const { return counts_; }
 
  private:
-  /// Starts paths in all slots that are free, as far as there are jobs.
-  void start_paths(const PathJobSource& jobs, const Film& film);
+  /// Whether another path is to start, of a new job if there is one and room for it.
+  bool has_next_path(const PathJobSource& jobs, const Film& film);
+  /// Starts a path in a slot. Those that meet nothing at all end at once.
+  /// @return false if there are no more
+  bool fill(std::size_t slot, const PathJobSource& jobs, Film& film);
+  /// Whether the first ray of a path misses everything.
+  bool misses_everything(const ScenePath& path) const;
+  /// Takes in a path that has ended, and its job if that has with it.
+  void end_path(ScenePath& path, const PathJobSource& jobs, Film& film);
   /// Fills order_.
   void set_order(const PathJob& job);
-  /// @param number of the newest job's paths
-  void start_path(std::size_t number, ScenePath& path);
-  /// Takes in the paths that have ended, and the jobs that have with them.
+  struct SamplePlace {
+    uint32_t pixel;   ///< Of the picture.
+    uint32_t sample;  ///< Of the pixel.
+  };
+  /// @param number of the job's samples, pixel by pixel
+  SamplePlace place_of(const PathJob& job, std::size_t number) const;
+  /// @param path_number of the newest job's paths
+  void start_path(std::size_t path_number, ScenePath& path);
+  /// Takes in the paths that have ended, and the jobs that have with them; others start in their
+  /// places.
   void end_paths(const PathJobSource& jobs, Film& film);
   /// @param pixel of the picture
   const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
@@ -78,7 +92,10 @@ class PathWavefront {
   void take_flight(std::size_t slot, const Walker& walker, std::size_t i, bool weighted);
   /// Whether the surface at which a ray ends has to be known before it flies.
   bool needs_surfaces_first(const ScenePath& path) const;
-  void find_surface(ScenePath& path) const;
+  void find_surface(ScenePath& path);
+  /// Where the ray of a path ends, if it ends at a surface.
+  SurfaceHit& hit_of(const ScenePath& path) { return hits_[&path - paths_.data()]; }
+  PathSample& result_of(const ScenePath& path) { return jobs_.results[path.result]; }
 
   /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
   bool sees_rgb(const ScenePath& path) const;
@@ -140,8 +157,6 @@ class PathWavefront {
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
   /// The medium of the scene, and its component, in which a collision takes place.
   static MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component);
-  /// The mean over the channels that a path carries.
-  static float carried_mean(const ScenePath& path, const Channels& values);
   /// Records the first event of a path.
   /// @param weight its probability over that with which it came about, in each channel
   void record_event(ScenePath& path, float t, const Channels& weight, const Channels& albedo,
@@ -159,10 +174,13 @@ class PathWavefront {
   const PathScene& scene_;
   MediaPlaces places_;
   PlaceId camera_place_ = 0;
+  std::optional<Box3f> everything_;                        // around the medium, if that is all
+  bool is_balanced_ = true;                                // whether white stays as it is
   bool has_alpha_ = false;                                 // whether a shape of the scene has
   std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
   std::vector<TiedSurface> ties_;                          // of the surface that a path meets
   std::vector<ScenePath> paths_;
+  std::vector<SurfaceHit> hits_;  // of the paths, if there are surfaces
   std::size_t active_ = 0;
   WalkBatches batches_;
   FlightStream flights_;

@@ -42,6 +42,7 @@ struct ColorVoxels {
   float scale = 1;                            ///< Of both coefficients.
   float radiance_scale = 1;
   PhaseFunction phase = {};
+  int super_voxel = 0;  ///< Edge of the super-voxels [voxels], 0 for automatic.
 };
 
 /// A medium, and its cross sections in the channels of some paths.
@@ -84,6 +85,8 @@ class SceneMedium {
   std::size_t bytes_of_set(int wavelengths) const;
   /// What it fills [world].
   const Box3d& bounds() const { return bounds_; }
+  /// Beyond which it is nowhere, whatever filter its voxels are read by [world].
+  Box3d outer_bounds() const;
   /// Null where voxels depend on wavelengths.
   const std::shared_ptr<const Medium>& medium() const { return medium_; }
   const std::vector<SceneMediumComponent>& components() const { return components_; }

@@ -42,6 +42,7 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId pl
   const Walker& walker = path.colors->walker(medium, path.channel);
   auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
   segments_.emplace_back(1.0F);
+  owners_.push_back(shadow.owner);
   set_ray(batch.rays, slot, shadow.origin + shadow.direction * begin, shadow.direction,
           end - begin);
   batch.rays.pixel[slot] = path.pixel;
@@ -142,12 +143,8 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
 
 void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {
   if (shadows_.empty()) return;
-  batches_.clear();
-  segments_.clear();
-  owners_.clear();
-  for (Shadow& shadow : shadows_) {
-    trace_surfaces(shadow, paths[shadow.owner]);
-    owners_.resize(segments_.size(), shadow.owner);
+  if (scene_.surfaces) {
+    for (Shadow& shadow : shadows_) trace_surfaces(shadow, paths[shadow.owner]);
   }
   for (WalkBatches::Batch* const batch : batches_.finish()) {
     batch->walker->transmittance(batch->rays, flights_, statistics);
@@ -171,6 +168,9 @@ void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statisti
     (shadow.is_rgb ? path.rgb : path.radiance) += shadow.radiance;
   }
   shadows_.clear();
+  batches_.clear();
+  segments_.clear();
+  owners_.clear();
 }
 
 }  // namespace freepath

@@ -21,13 +21,14 @@ class ShadowTracer {
   ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed, std::size_t slots);
 
   /// Adds a ray.
-  /// @param owner of PathState, whose radiance it is to add to
+  /// @param owner number of the path, whose radiance it is to add to
   /// @param place at its origin
   /// @param radiance what it adds if nothing is in between
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
-  void add(uint32_t owner, const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
-           PlaceId place, const Channels& radiance, bool is_rgb) {
+  void add(uint32_t owner, const ScenePath& path, const Vec3f& origin, const Vec3f& direction,
+           const ShadowEnd& end, PlaceId place, const Channels& radiance, bool is_rgb) {
     shadows_.push_back({origin, direction, end, radiance, place, owner, is_rgb});
+    if (!scene_.surfaces) trace_surfaces(shadows_.back(), path);  // while its path is at hand
   }
 
   /// Traces all rays, adds to their paths, and forgets them.

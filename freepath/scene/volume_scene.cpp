@@ -1,307 +1,36 @@
 #include "freepath/scene/volume_scene.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
 
-#include "freepath/base/error.h"
-#include "freepath/io/image.h"
-#include "freepath/lights/light_descriptions.h"
-#include "freepath/lights/sky.h"
-#include "freepath/lights/thermal_radiance.h"
-#include "freepath/media/walk_space.h"
-#include "freepath/sensors/framing.h"
+#include "freepath/geometry/surfaces.h"
 #include "freepath/spectra/rgb_color_space.h"
 
 namespace freepath {
-namespace {
-
-void set_coefficients(const OpticalProperties& optics, Component& component) {
-  if (!std::isfinite(optics.density_scale) || optics.density_scale < 0) {
-    fail("the density scale is {}; it must be finite and not negative", optics.density_scale);
-  }
-  if (optics.sigma_a || optics.sigma_s) {
-    component.sigma_a = optics.sigma_a.value_or(Spectrum(0.0F));
-    component.sigma_s = optics.sigma_s.value_or(Spectrum(0.0F));
-  } else {
-    for (int channel = 0; channel < kChannels; ++channel) {
-      const float albedo = optics.albedo[channel];
-      if (!(albedo >= 0 && albedo <= 1)) {
-        fail("the albedo of channel {} is {}; it must lie in 0 to 1", channel, albedo);
-      }
-    }
-    component.sigma_s = optics.albedo;
-    component.sigma_a = Spectrum(1.0F) - optics.albedo;
-  }
-  component.sigma_a *= optics.density_scale;
-  component.sigma_s *= optics.density_scale;
-}
-
-/// Black bodies of temperatures, in R, G and B (sRGB).
-std::array<RadianceField, kChannels> glow_of(const TemperatureEmission& emission) {
-  const RgbColorSpace& space = rgb_color_space("srgb");
-  const auto fields = tabulate_radiance(emission, [&](double kelvin) {
-    const Vec3d rgb = space.from_xyz(thermal_xyz(kelvin));
-    Channels radiance;
-    for (int c = 0; c < kChannels; ++c) radiance[c] = static_cast<float>(rgb[c]);
-    return radiance;
-  });
-  return {fields[0], fields[1], fields[2]};
-}
-
-/// The components that a volume contributes.
-void add_components(Volume volume, std::vector<Component>& components,
-                    std::vector<std::optional<TemperatureEmission>>& temperatures) {
-  const std::size_t densities = volume.densities.size();
-  if (densities != 1 && densities != kChannels) {
-    fail("a volume has one density, or three for R, G and B, not {}", densities);
-  }
-  std::array<RadianceField, kChannels> glow;
-  Spectrum emission = volume.optics.emission.value_or(Spectrum(0.0F));
-  std::optional<TemperatureEmission> temperature;
-  if (volume.temperature) {
-    temperature = {volume.temperature, volume.optics.temperature_scale,
-                   volume.optics.temperature_offset};
-    glow = glow_of(*temperature);
-    const Spectrum scale = volume.optics.emission.value_or(Spectrum(1.0F));
-    emission = glow[0].field ? scale : Spectrum(0.0F);
-  }
-  for (std::size_t i = 0; i < densities; ++i) {
-    Component component;
-    component.radiance = glow;
-    component.density = std::make_shared<const Field>(std::move(volume.densities[i]));
-    component.phase = volume.optics.phase;
-    component.emission = emission;
-    set_coefficients(volume.optics, component);
-    if (densities > 1) {
-      Spectrum only(0.0F);
-      only[static_cast<int>(i)] = 1;
-      component.sigma_a *= only;
-      component.sigma_s *= only;
-    }
-    components.push_back(std::move(component));
-    temperatures.push_back(temperature);
-  }
-}
-
-/// Adds corners of the bricks that hold something, of each row along z only the first and the last:
-/// all that their convex hull needs [world].
-void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
-  const BrickMap& map = field.voxels;
-  const auto add_brick = [&](const Vec3i& place) {
-    const Vec3i first = place * BrickMap::kBrickSize;
-    for (int corner = 0; corner < 8; ++corner) {
-      Vec3d point;
-      for (int axis = 0; axis < 3; ++axis) {
-        point[axis] =
-            (corner >> axis & 1) != 0
-                ? std::min(first[axis] + BrickMap::kBrickSize - 1, map.active_max()[axis]) + 0.5
-                : std::max(first[axis], map.active_min()[axis]) - 0.5;
-      }
-      corners.push_back(point * field.index_to_world);
-    }
-  };
-  std::optional<Vec3i> last;  // of the row so far
-  map.for_each_brick([&](const PlacedBrick& placed) {
-    const Vec3i& place = placed.place;
-    if (!last || last->x != place.x || last->y != place.y) {
-      if (last) add_brick(*last);
-      add_brick(place);
-    }
-    last = place;
-  });
-  if (last) add_brick(*last);
-}
-
-/// Straight up or down no horizon tells what is up in the picture; then north is.
-Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
-  const Vec3d world_up(up_vector(up));
-  const Vec3d sight = line_of_sight.normalized();
-  const bool vertical = sight.cross(world_up).length() < 1e-4;
-  return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
-}
-
-/// Beyond this many mean free paths across a volume single precision no longer tells one tentative
-/// collision from the next, and a walk would not get on.
-constexpr double kLargestOpticalDepth = 4e6;
-
-/// Length across a part of a medium [world].
-double length_of(const Medium& medium, const WalkPart& part) {
-  const Matrix4d to_world = medium.world_to_place().inverse();
-  Box3d box;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d place;
-    for (int axis = 0; axis < 3; ++axis) {
-      place[axis] = (corner >> axis & 1) != 0 ? part.box.end[axis] : part.box.begin[axis];
-    }
-    box.extendBy(place * to_world);
-  }
-  return std::min(box.size().length(), medium.world_bounds().size().length());
-}
-
-void check_optical_depth(const Medium& medium, const WalkPart& medium_part) {
-  const std::vector<Component>& components = medium.components();
-  const std::vector<float>& maxima = medium_part.cells.maxima;
-  const double length = length_of(medium, medium_part);
-  double depth = 0;
-  double deepest = -1;
-  float densest = 0;
-  const Field* field = nullptr;
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    float most = 0;
-    for (std::size_t i = k; i < maxima.size(); i += components.size()) {
-      most = std::max(most, maxima[i]);
-    }
-    const double part = double{most} * largest(components[k].sigma_t()) * length;
-    depth += part;
-    if (part <= deepest) continue;
-    deepest = part;
-    densest = most;
-    field = components[k].density.get();
-  }
-  if (depth > kLargestOpticalDepth) {
-    fail(
-        "grid '{}': its largest density, {}, makes an optical depth of {:.3g} across the volume, "
-        "more "
-        "than {:.0e}: take a smaller --density-scale or smaller coefficients",
-        field->name, densest, depth, kLargestOpticalDepth);
-  }
-}
-
-void check_radiance(const Spectrum& radiance) {
-  if (is_finite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0) return;
-  fail("the radiance of the environment is {},{},{}; it must be finite and not negative",
-       radiance.x, radiance.y, radiance.z);
-}
-
-Vec3d vector_of(const Spectrum& rgb) { return {rgb.x, rgb.y, rgb.z}; }
-
-/// A coefficient of any size. Equal channels are the same at all wavelengths.
-SpectralDistribution coefficient(const Spectrum& rgb, const RgbColorSpace& space) {
-  if (rgb.x == rgb.y && rgb.y == rgb.z) return {double{rgb.x}};
-  return RgbSpectrum::unbounded(vector_of(rgb), space);
-}
-
-std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, SpectrumTable& table) {
-  const auto add = [&](const Spectrum& rgb) {
-    return table.add(coefficient(rgb, table.space()), SpectrumRole::kReflectance);
-  };
-  std::vector<SceneMediumComponent> spectra;
-  for (const Component& component : medium.medium->components()) {
-    const std::size_t number = spectra.size();
-    SceneMediumComponent& target = spectra.emplace_back();
-    target.sigma_a = add(component.sigma_a);
-    target.sigma_s = add(component.sigma_s);
-    target.phase = component.phase;
-    if (number < medium.temperatures.size() && medium.temperatures[number]) {
-      target.temperature = medium.temperatures[number];
-      target.temperature_factor = add(component.emission);
-    } else if (component.radiance[0].field) {
-      fail(
-          "component {}: its radiance is a field without temperatures, of which no spectrum is "
-          "known",
-          number);
-    } else if (largest(component.emission) > 0) {
-      target.radiance =
-          table.add(RgbSpectrum::illuminant(vector_of(component.emission), table.space()),
-                    SpectrumRole::kIlluminant);
-    }
-  }
-  return spectra;
-}
-
-}  // namespace
-
-VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel) {
-  std::vector<Field*> fields;
-  for (Volume& volume : volumes) {
-    for (Field& field : volume.densities) fields.push_back(&field);
-  }
-  if (!fields.empty()) share_layout(fields);
-  std::vector<Component> components;
-  VolumeMedium result;
-  for (Volume& volume : volumes) {
-    add_components(std::move(volume), components, result.temperatures);
-  }
-  if (components.size() > Medium::kMaxComponents) {
-    fail("the volumes have {} densities, more than {}: an RGB density counts as three",
-         components.size(), Medium::kMaxComponents);
-  }
-  result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
-  for (const WalkPart& part : result.medium->parts()) check_optical_depth(*result.medium, part);
-  return result;
-}
-
-Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up) {
-  const double aspect = static_cast<double>(options.width) / options.height;
-  std::vector<Vec3d> corners;
-  for (const Component& component : medium.components()) {
-    add_occupied_corners(*component.density, corners);
-  }
-  if (corners.empty()) {  // an empty medium
-    const Box3d box = medium.world_bounds();
-    corners = {box.min, box.max};
-  }
-  View view = frame_points(corners, up, options.fov, aspect);
-  if (options.from) view.from = *options.from;
-  if (options.at) view.at = *options.at;
-  view.up = picture_up(view.at - view.from, up);
-  return Camera(view, options.width, options.height);
-}
-
-bool is_empty(const Medium& medium) {
-  const std::vector<Component>& components = medium.components();
-  const std::vector<float>& maxima = medium.super_voxels().maxima;
-  const auto is_computed = [](const Component& c) { return c.density->function != nullptr; };
-  return std::none_of(components.begin(), components.end(), is_computed) &&
-         std::all_of(maxima.begin(), maxima.end(), [](float most) { return most == 0; });
-}
-
-Surroundings make_surroundings(const LightOptions& options, UpAxis up,
-                               std::vector<std::string>* warnings) {
-  Surroundings result;
-  if (options.sun) result.sun.emplace(options.sun_parameters, up);
-  if (const auto* radiance = std::get_if<Spectrum>(&options.environment)) {
-    check_radiance(*radiance);
-    result.environment = *radiance;
-  } else if (const auto* file = std::get_if<std::string>(&options.environment)) {
-    Image image = read_image(*file);
-    std::string warning = mend_invalid_pixels(image, *file, options.invalid);
-    if (!warning.empty() && warnings != nullptr) warnings->push_back(std::move(warning));
-    result.environment = ImageEnvironment(image, up, *file);
-  } else {
-    result.environment = make_sky(options.sun_parameters, up);
-  }
-  return result;
-}
 
 PathScene make_volume_scene(const VolumeMedium& medium, const Camera& camera,
-                            const Surroundings& surroundings) {
+                            const Surroundings& surroundings, const std::optional<Ground>& ground) {
   PathScene scene;
   scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space("srgb"));
-  scene.media.emplace_back("volume", medium.medium, spectra_of(medium, *scene.spectra));
+  scene.media.push_back(to_scene_medium(medium, *scene.spectra));
   scene.is_clear = {true};
   scene.camera_media.add(0, 1);
   scene.camera = camera;
+  scene.filter = PixelFilter(BoxFilter());
   scene.origin = medium.medium->world_bounds().center();
   SceneLightsDescription lights;
   lights.origin = scene.origin;
-  if (const auto* radiance = std::get_if<Spectrum>(&surroundings.environment)) {
-    check_radiance(*radiance);
-    const RgbSpectrum light = RgbSpectrum::illuminant(vector_of(*radiance), scene.spectra->space());
-    lights.lights.emplace_back(
-        ConstantInfiniteLight{.name = "the environment",
-                              .radiance = scene.spectra->add(light, SpectrumRole::kIlluminant)});
-  } else {
-    lights.lights.emplace_back(
-        EnvironmentLight{.environment = std::get<ImageEnvironment>(surroundings.environment)});
-  }
-  if (surroundings.sun) lights.lights.emplace_back(SunLight{.sun = *surroundings.sun});
+  lights.lights = to_lights(surroundings, *scene.spectra);
   scene.lights.emplace(std::move(lights), *scene.spectra);
+  if (ground) {
+    const Box3d& bounds = scene.media[0].bounds();
+    const float x = 0.5F * static_cast<float>(camera.width());
+    const Vec3d eye = camera.ray(x, 0.5F * static_cast<float>(camera.height())).origin;
+    SurfaceScene surfaces;
+    add_ground(*ground, bounds, eye, scene, surfaces);
+    scene.surfaces.emplace(surfaces, scene.origin);
+    scene.is_clear[0] = !scene.surfaces->intersects_box(std::vector<uint32_t>{0}, bounds);
+  }
   return scene;
 }
 

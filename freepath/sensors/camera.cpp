@@ -113,8 +113,19 @@ void check_distance(const char* what, const Vec3d& point) {
   }
 }
 
-/// Rows are the camera's axes, its position the last.
-Matrix4d matrix_of(const View& view) {
+/// The angle of view is vertical, whichever side of the film is the shorter one.
+PerspectiveCamera pinhole(const View& view, int width, int height) {
+  check_film(width, height);
+  const double aspect = static_cast<double>(width) / height;
+  PerspectiveCamera camera;
+  camera.fov = view.fov;
+  camera.screen_window = {-aspect, aspect, -1, 1};
+  return camera;
+}
+
+}  // namespace
+
+Matrix4d world_from_camera(const View& view) {
   if (!is_finite(view.from) || !is_finite(view.at) || !is_finite(view.up)) {
     fail("the camera's position, target and up vector must be finite numbers");
   }
@@ -144,18 +155,6 @@ Matrix4d matrix_of(const View& view) {
   }
   return matrix;
 }
-
-/// The angle of view is vertical, whichever side of the film is the shorter one.
-PerspectiveCamera pinhole(const View& view, int width, int height) {
-  check_film(width, height);
-  const double aspect = static_cast<double>(width) / height;
-  PerspectiveCamera camera;
-  camera.fov = view.fov;
-  camera.screen_window = {-aspect, aspect, -1, 1};
-  return camera;
-}
-
-}  // namespace
 
 double half_extent(double fov) {
   if (!(fov > 0 && fov < 180)) {
@@ -248,7 +247,7 @@ Camera::Camera(const CameraModel& model, const Matrix4d& world_from_camera, int 
     : width_(width), height_(height), rays_(make_rays(model, world_from_camera, width, height)) {}
 
 Camera::Camera(const View& view, int width, int height)
-    : Camera(pinhole(view, width, height), matrix_of(view), width, height) {}
+    : Camera(pinhole(view, width, height), world_from_camera(view), width, height) {}
 
 CameraRay Camera::ray(float film_x, float film_y, float lens_u, float lens_v) const {
   if (const auto* camera = std::get_if<Projective>(&rays_)) {

@@ -20,6 +20,11 @@ struct View {
   double fov = 40;      ///< Vertical angle of view [degrees], in (0, 180).
 };
 
+/// The transform of a camera that has this view: rows are its axes and position.
+/// @throws Error if `from` and `at` are the same or beyond 1e30, or `up` is parallel to the line of
+///   sight
+Matrix4d world_from_camera(const View& view);
+
 /// A ray from the camera.
 struct CameraRay {
   Vec3d origin;     ///< [world]

@@ -100,7 +100,8 @@ std::size_t step_count(const FilterModel& model, double radius) {
 
 }  // namespace
 
-PixelFilter::Axis::Axis(const FilterModel& filter, double reach) : model(filter), radius(reach) {
+PixelFilter::Axis::Axis(const FilterModel& filter, double reach)
+    : model(filter), radius(reach), is_box(std::holds_alternative<BoxFilter>(filter)) {
   const std::size_t steps = step_count(model, radius);
   const double width = radius / static_cast<double>(steps);
   const auto value = [&](double node) {
@@ -137,6 +138,7 @@ double PixelFilter::Axis::evaluate(double x) const {
 }
 
 PixelFilter::Place PixelFilter::Axis::sample(float u) const {
+  if (is_box) return {static_cast<float>(radius) * (2 * u - 1), 1};
   const double side = 2 * static_cast<double>(u) - 1;
   const double target = std::abs(side);
   const auto above = std::upper_bound(cdf.begin() + 1, cdf.end() - 1, target);

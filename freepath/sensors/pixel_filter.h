@@ -81,6 +81,7 @@ class PixelFilter {
 
     FilterModel model;
     double radius;
+    bool is_box;
     double scale = 1;             // makes the integral over [-radius, radius] 1
     std::vector<double> density;  // at the nodes, of integral 1/2
     std::vector<double> cdf;      // up to the nodes, from 0 to 1

@@ -18,9 +18,12 @@ struct PixelWindow {
   constexpr bool is_whole() const { return width == full_width && height == full_height; }
   /// Where in the picture (row · full_width + column) a pixel of the window is, which is
   /// numbered row by row.
-  constexpr std::size_t in_picture(std::size_t pixel) const {
-    const auto columns = static_cast<std::size_t>(width);
-    return (y + pixel / columns) * full_width + x + pixel % columns;
+  /// @param pixel below 2^32
+  constexpr uint32_t in_picture(std::size_t pixel) const {
+    // Divisions of 32 bits take a third of the time.
+    const auto number = static_cast<uint32_t>(pixel);
+    const auto columns = static_cast<uint32_t>(width);
+    return (y + number / columns) * full_width + x + number % columns;
   }
 };
 

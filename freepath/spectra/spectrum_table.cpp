@@ -104,11 +104,14 @@ bool SpectrumTable::is_constant(SpectrumId id) const {
 
 SpectrumValues SpectrumTable::in_rgb() const {
   SpectrumValues values;
+  values.keeps_colours_ = &space_ == &texture_space();
   for (const Entry& entry : entries_) values.values_.push_back(entry.rgb);
   for (int i = 0; i < 3; ++i) {
     Vec3d unit(0);
     unit[i] = 1;
-    values.reflectance_basis_[i] = to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
+    values.reflectance_basis_[i] = values.keeps_colours_
+                                       ? to_channels(unit)
+                                       : to_channels(space_.from_xyz(texture_space().to_xyz(unit)));
     values.to_rgb_[i] = Vec3f(unit);
   }
   // Times channels that are 0, but must not be NaN.
@@ -122,6 +125,7 @@ SpectrumValues SpectrumTable::seen_in_rgb() const {
   SpectrumValues values = in_rgb();
   for (std::size_t i = 0; i < entries_.size(); ++i) values.values_[i] = entries_[i].seen;
   values.lights_ = &texture_lights();
+  values.keeps_colours_ = false;
   return values;
 }
 

@@ -46,6 +46,7 @@ class SpectrumValues {
   /// is of it, or in R, G, B the colour itself or what is seen of that spectrum.
   /// @param rgb finite and not negative
   Channels illuminant(const Vec3f& rgb) const {
+    if (keeps_colours_) return {rgb.x, rgb.y, rgb.z};
     if (!lights_) return mix(reflectance_basis_, rgb);
     if (!is_spectral()) return mix(reflectance_basis_, lights_->seen(rgb));
     return light(lights_->light(rgb));
@@ -86,6 +87,7 @@ class SpectrumValues {
 
   std::vector<Channels> values_;
   std::array<Channels, 3> reflectance_basis_;
+  bool keeps_colours_ = false;          // whether colours of images are those of the channels
   const LightTable* lights_ = nullptr;  // null where colours stay as they are given
   Channels white_;                      // of the spectra of lights
   Channels coordinates_;                // u of the wavelengths, as SigmoidPolynomial has it

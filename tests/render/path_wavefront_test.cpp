@@ -5,9 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "tests/scene/volume_pictures.h"
@@ -44,19 +41,6 @@ struct Stage {
   PathSetup setup;
 };
 
-/// Traces a job until `stop` says so.
-bool trace(PathWavefront& wavefront, const PathJob& job, Film& film,
-           const std::function<bool()>& stop) {
-  bool is_taken = false;
-  PathJobSource jobs;
-  jobs.next = [&]() -> std::optional<PathJob> {
-    if (std::exchange(is_taken, true)) return std::nullopt;
-    return job;
-  };
-  jobs.stop = stop;
-  return wavefront.trace(jobs, film);
-}
-
 /// Of walks, those of jobs that were dropped count too.
 void expect_same_paths(const PathCounts& a, const PathCounts& b) {
   EXPECT_EQ(a.paths, b.paths);
@@ -74,7 +58,7 @@ TEST(PathWavefront, IsStoppedWithinAFlight) {
   for (const int allowed : {1, 2, 5}) {
     Film film(kColumns, kRows);
     int questions = 0;
-    EXPECT_FALSE(trace(wavefront, kJob, film, [&] { return ++questions > allowed; }));
+    EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return ++questions > allowed; }));
     EXPECT_EQ(questions, allowed + 1);
     for (int pixel = 0; pixel < kColumns * kRows; ++pixel) EXPECT_EQ(film.samples(pixel), 0U);
   }
@@ -87,14 +71,14 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
     Film whole(kColumns, kRows);
     PathWavefront undisturbed(stage.setup);
     uint64_t questions = 0;
-    ASSERT_TRUE(trace(undisturbed, kJob, whole, [&] { return ++questions, false; }));
+    ASSERT_TRUE(undisturbed.trace(kJob, whole, [&] { return ++questions, false; }));
     ASSERT_GT(questions, 10U);  // more than once a path: within paths
 
     PathWavefront wavefront(stage.setup);
     for (uint64_t allowed = 0; allowed < questions; ++allowed) {
       Film film(kColumns, kRows);
       uint64_t left = allowed;
-      EXPECT_FALSE(trace(wavefront, kJob, film, [&] { return left-- == 0; })) << allowed;
+      EXPECT_FALSE(wavefront.trace(kJob, film, [&] { return left-- == 0; })) << allowed;
       EXPECT_EQ(film.sample_counts().most, 0U);
     }
     expect_same_paths(wavefront.counts(), {});

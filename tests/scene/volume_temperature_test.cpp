@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "freepath/paths/renderer.h"
+#include "freepath/scene/volume_camera.h"
 #include "freepath/scene/volume_scene.h"
 #include "freepath/spectra/blackbody.h"
 #include "freepath/spectra/cie_observer.h"

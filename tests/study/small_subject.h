@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "freepath/scene/volume_camera.h"
 #include "freepath/scene/volume_scene.h"
 #include "freepath/study/subject.h"
 #include "tests/media/make_field.h"

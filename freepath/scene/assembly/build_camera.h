@@ -28,11 +28,6 @@ struct PictureSettings {
   std::optional<Interpolation> interpolation;
 };
 
-/// The film's size [pixels].
-struct FilmSize {
-  int width = 1280, height = 720;
-};
-
 /// @throws Error with file:line:column
 PictureSettings build_picture(BuildContext& context, FilmSize& size);
 

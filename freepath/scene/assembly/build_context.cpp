@@ -103,7 +103,7 @@ Image read_scene_image(BuildContext& context, const std::string& path,
                        const SourceLocation& location) {
   return at_location(location, [&] {
     Image image = read_image(path);
-    const std::string warning = mend_invalid_pixels(image, path, context.invalid);
+    const std::string warning = mend_invalid_pixels(image, path, context.options.invalid);
     if (!warning.empty()) context.diagnostics.warn(location, warning);
     return in_srgb(std::move(image));
   });

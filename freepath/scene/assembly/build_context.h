@@ -11,11 +11,32 @@
 
 #include "freepath/io/invalid_values.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/scene/ground.h"
 #include "freepath/scene/pbrt/diagnostics.h"
 #include "freepath/scene/pbrt/scene.h"
+#include "freepath/scene/surroundings.h"
 #include "freepath/spectra/spectrum_table.h"
 
 namespace freepath {
+
+/// The film's size [pixels].
+struct FilmSize {
+  int width = 1280, height = 720;
+};
+
+/// What may be said about a scene from outside of its file.
+struct BuildOptions {
+  std::optional<FilmSize> size = {};  ///< Replaces the film's.
+  /// For voxels and pixels that are NaN or infinite.
+  InvalidPolicy invalid = InvalidPolicy::kZero;
+  int super_voxel = 0;  ///< Edge of the super-voxels of all media [voxels], 0 for automatic.
+  /// An environment replaces the scene's lights from everywhere around; the sun is added.
+  Surroundings surroundings = {};
+  std::optional<Ground> ground = {};  ///< Is added.
+  /// Of media whose statements say nothing of it [1/m per density].
+  std::optional<Spectrum> sigma_a = {}, sigma_s = {};
+  std::optional<PhaseFunction> phase = {};
+};
 
 /// A scene on its way from its description to what is rendered. Parts fill `scene`; each reports
 /// the parameters of its statements that it did not ask for (ParameterList::report_unused).
@@ -35,8 +56,7 @@ struct BuildContext {
   std::vector<std::optional<uint32_t>> materials = {};
   /// Files that statements name (file_of).
   std::vector<std::filesystem::path> files = {};
-  /// For voxels and pixels that are NaN or infinite.
-  InvalidPolicy invalid = InvalidPolicy::kZero;
+  BuildOptions options = {};
 };
 
 /// Which spectrum a parameter's colour stands for.
@@ -61,7 +81,7 @@ std::filesystem::path file_of(BuildContext& context, const ParameterList& list,
                               std::string_view name);
 
 /// The image that a statement names, in sRGB; pixels that can't be used are treated as
-/// BuildContext::invalid says.
+/// BuildOptions::invalid says.
 /// @throws Error with file:line:column
 Image read_scene_image(BuildContext& context, const std::string& path,
                        const SourceLocation& location);

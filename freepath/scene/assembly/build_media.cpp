@@ -85,12 +85,18 @@ class MediumReader {
       sigma_a = RgbSpectrum::unbounded(found->sigma_a, space);
       sigma_s = RgbSpectrum::unbounded(found->sigma_prime_s, space);
     }
+    if (preset.empty() && context_.options.sigma_a) sigma_a = from_rgb(*context_.options.sigma_a);
+    if (preset.empty() && context_.options.sigma_s) sigma_s = from_rgb(*context_.options.sigma_s);
     sigma_a = coefficient("sigma_a", sigma_a);
     sigma_s = coefficient("sigma_s", sigma_s);
     largest_ = sigma_a.largest() + sigma_s.largest();
     component.sigma_a = context_.scene.spectra->add(sigma_a, SpectrumRole::kReflectance);
     component.sigma_s = context_.scene.spectra->add(sigma_s, SpectrumRole::kReflectance);
     component.scale = nonnegative("scale", 1);
+  }
+
+  static SpectralDistribution from_rgb(const Spectrum& rgb) {
+    return RgbSpectrum::unbounded({rgb.x, rgb.y, rgb.z}, rgb_color_space("srgb"));
   }
 
   float nonnegative(std::string_view name, double otherwise) {
@@ -113,6 +119,7 @@ class MediumReader {
         return phase;
       });
     }
+    if (context_.options.phase && !list_.type_of("g")) return *context_.options.phase;
     const double g = list_.get_float("g", 0);
     return at_location(list_.location_of("g"),
                        [&] { return PhaseFunction::henyey_greenstein(static_cast<float>(g)); });
@@ -294,6 +301,7 @@ class MediumReader {
   SceneMedium color_grid() {
     const Layout layout = this->layout();
     auto grid = std::make_shared<ColorVoxels>();
+    grid->super_voxel = context_.options.super_voxel;
     grid->counts = layout.counts;
     grid->index_to_world = layout.index_to_world;
     grid->sigma_a = colors(layout, "sigma_a", ColorMeaning::kUnbounded);
@@ -319,7 +327,7 @@ class MediumReader {
     LoadOptions options;
     options.selection.name = name;
     options.scalar_only = true;
-    options.invalid = context_.invalid;
+    options.invalid = context_.options.invalid;
     LoadedField loaded = load_field(file, options);
     for (const std::string& warning : loaded.warnings) {
       context_.diagnostics.warn(medium_.location, warning);
@@ -363,7 +371,7 @@ class MediumReader {
     Component component;
     component.density = density;
     component.sigma_s = Spectrum(static_cast<float>(largest_ * values.scale));
-    Medium medium({component});
+    Medium medium({component}, context_.options.super_voxel);
     float densest = 0;
     for (const WalkPart& part : medium.parts()) {
       for (const float maximum : part.cells.maxima) densest = std::max(densest, maximum);

@@ -56,6 +56,31 @@ Vec3d origin_of(const PathScene& scene, const Box3d& extent) {
   return (box.isEmpty() ? extent : box).center();
 }
 
+/// Shapes, and media that have bounds of their own.
+Box3d bounded_extent(const PathScene& scene, const BuiltShapes& shapes) {
+  Box3d extent;
+  if (!shapes.empty()) {
+    const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
+    if (!bounds.isEmpty()) extent = Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
+  }
+  for (const SceneMedium& medium : scene.media) {
+    if (!medium.is_homogeneous()) extent.extendBy(medium.bounds());
+  }
+  return extent;
+}
+
+/// Adds lights from outside of the file, which take the place of some of its own.
+void add_surroundings(const Surroundings& surroundings, std::vector<LightDescription>& lights,
+                      SpectrumTable& table) {
+  if (surroundings.environment) {
+    std::erase_if(lights, [](const LightDescription& light) {
+      return std::holds_alternative<ConstantInfiniteLight>(light) ||
+             std::holds_alternative<ImageInfiniteLight>(light);
+    });
+  }
+  for (LightDescription& light : to_lights(surroundings, table)) lights.push_back(std::move(light));
+}
+
 /// Remembers what was read.
 class RecordingReader final : public FileReader {
  public:
@@ -92,7 +117,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   PathScene& scene = built.scene;
   scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space(name_of(pbrt.color_space)));
   BuildContext context{pbrt, diagnostics, scene};
-  context.invalid = options.invalid;
+  context.options = options;
   FilmSize size;
   built.picture = build_picture(context, size);
   scene.exposure_scale = built.picture.exposure_scale;
@@ -112,8 +137,15 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   scene.origin = origin_of(scene, extent);
   scene.textures.set_origin(scene.origin);
   scene.shapes = shapes.shapes;
+  if (options.ground) {
+    const float x = 0.5F * static_cast<float>(scene.camera->width());
+    const float y = 0.5F * static_cast<float>(scene.camera->height());
+    add_ground(*options.ground, bounded_extent(scene, shapes), scene.camera->ray(x, y).origin,
+               scene, shapes.surfaces);
+  }
   SceneLightsDescription lights;
   lights.lights = build_lights(context);
+  add_surroundings(options.surroundings, lights.lights, *scene.spectra);
   lights.emissions = shapes.emissions;
   lights.area_lights = build_area_lights(shapes, scene.origin);
   lights.origin = scene.origin;

@@ -21,12 +21,6 @@ struct BuiltScene {
   std::vector<std::filesystem::path> files = {};
 };
 
-/// What may be said about a scene from outside of its file.
-struct BuildOptions {
-  std::optional<FilmSize> size = {};  ///< Replaces the film's.
-  InvalidPolicy invalid = InvalidPolicy::kZero;
-};
-
 /// Builds a scene. Every parameter that is not understood is named in `diagnostics`.
 /// @throws Error, beginning with file:line:column, for what cannot be rendered
 BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,

@@ -1,0 +1,129 @@
+#include "freepath/scene/volume_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/media/brick_map.h"
+#include "freepath/sensors/framing.h"
+
+namespace freepath {
+namespace {
+
+/// Adds corners of the bricks that hold something, of each row along z only the first and the last:
+/// all that their convex hull needs [world].
+void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
+  const BrickMap& map = field.voxels;
+  const auto add_brick = [&](const Vec3i& place) {
+    const Vec3i first = place * BrickMap::kBrickSize;
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3d point;
+      for (int axis = 0; axis < 3; ++axis) {
+        point[axis] =
+            (corner >> axis & 1) != 0
+                ? std::min(first[axis] + BrickMap::kBrickSize - 1, map.active_max()[axis]) + 0.5
+                : std::max(first[axis], map.active_min()[axis]) - 0.5;
+      }
+      corners.push_back(point * field.index_to_world);
+    }
+  };
+  std::optional<Vec3i> last;  // of the row so far
+  map.for_each_brick([&](const PlacedBrick& placed) {
+    const Vec3i& place = placed.place;
+    if (!last || last->x != place.x || last->y != place.y) {
+      if (last) add_brick(*last);
+      add_brick(place);
+    }
+    last = place;
+  });
+  if (last) add_brick(*last);
+}
+
+/// Straight up or down no horizon tells what is up in the picture; then north is.
+Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
+  const Vec3d world_up(up_vector(up));
+  const Vec3d sight = line_of_sight.normalized();
+  const bool vertical = sight.cross(world_up).length() < 1e-4;
+  return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
+}
+
+/// A matrix whose rows are the images of the camera's axes and its position.
+Matrix4d rows(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& position) {
+  Matrix4d matrix;
+  for (int axis = 0; axis < 3; ++axis) {
+    matrix[0][axis] = x[axis];
+    matrix[1][axis] = y[axis];
+    matrix[2][axis] = z[axis];
+    matrix[3][axis] = position[axis];
+  }
+  return matrix;
+}
+
+/// The film is as large as what the perspective camera sees where it looks at.
+Camera orthographic(const View& view, int width, int height) {
+  const double extent = half_extent(view.fov) * (view.at - view.from).length();
+  const double aspect = static_cast<double>(width) / height;
+  OrthographicCamera camera;
+  camera.screen_window = {-extent * aspect, extent * aspect, -extent, extent};
+  return {camera, world_from_camera(view), width, height};
+}
+
+/// The middle of the picture is where the equirectangular map has -x.
+Camera spherical(const View& view, UpAxis up, int width, int height) {
+  const Vec3d above(up_vector(up));
+  Vec3d ahead = view.at - view.from;
+  ahead -= above * above.dot(ahead);
+  if (!(ahead.length() > 1e-6 * (view.at - view.from).length())) {
+    ahead = Vec3d(sky_direction(0, 0, up));
+  }
+  ahead.normalize();
+  const Vec3d right = ahead.cross(above);
+  return {SphericalCamera{SphericalMapping::kEquirectangular}, rows(-ahead, above, -right, view.from),
+          width, height};
+}
+
+Camera camera_of(std::span<const Vec3d> points, const CameraOptions& options, UpAxis up) {
+  const double aspect = static_cast<double>(options.width) / options.height;
+  View view = frame_points(points, up, options.fov, aspect);
+  if (options.from) view.from = *options.from;
+  if (options.at) view.at = *options.at;
+  view.up = picture_up(view.at - view.from, up);
+  switch (options.kind) {
+    case CameraKind::kPerspective:
+      break;
+    case CameraKind::kOrthographic:
+      return orthographic(view, options.width, options.height);
+    case CameraKind::kSpherical:
+      return spherical(view, up, options.width, options.height);
+  }
+  return {view, options.width, options.height};
+}
+
+}  // namespace
+
+Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up) {
+  std::vector<Vec3d> corners;
+  for (const Component& component : medium.components()) {
+    add_occupied_corners(*component.density, corners);
+  }
+  if (corners.empty()) {  // an empty medium
+    const Box3d box = medium.world_bounds();
+    corners = {box.min, box.max};
+  }
+  return camera_of(corners, options, up);
+}
+
+Camera make_camera(const Box3d& box, const CameraOptions& options, UpAxis up) {
+  std::vector<Vec3d> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    corners.emplace_back((corner & 1) != 0 ? box.max.x : box.min.x,
+                         (corner & 2) != 0 ? box.max.y : box.min.y,
+                         (corner & 4) != 0 ? box.max.z : box.min.z);
+  }
+  return camera_of(corners, options, up);
+}
+
+}  // namespace freepath

@@ -1,0 +1,37 @@
+#pragma once
+/// @file Cameras by what they look at, and how to see all of a volume.
+
+#include <optional>
+
+#include "freepath/base/up_axis.h"
+#include "freepath/base/vector.h"
+#include "freepath/media/medium.h"
+#include "freepath/sensors/camera.h"
+
+namespace freepath {
+
+/// The kinds of camera that need no more than a view.
+enum class CameraKind {
+  kPerspective,
+  kOrthographic,  ///< Of the extent that the perspective one has where it looks at.
+  kSpherical      ///< Everything around, the target in the middle, the horizon level.
+};
+
+/// Where the camera stands; frames the whole volume where nothing is said.
+struct CameraOptions {
+  CameraKind kind = CameraKind::kPerspective;
+  int width = 640;
+  int height = 360;
+  double fov = 40;            ///< Vertical [degrees].
+  std::optional<Vec3d> from;  ///< [world]
+  std::optional<Vec3d> at;    ///< [world]
+};
+
+/// @param medium what to frame where the options name no position
+/// @throws Error as Camera and frame_points
+Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up);
+
+/// The same of what fills a box.
+Camera make_camera(const Box3d& box, const CameraOptions& options, UpAxis up);
+
+}  // namespace freepath
