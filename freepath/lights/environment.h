@@ -99,7 +99,7 @@ class ImageEnvironment {
 
   /// Bilinear interpolant at a point whose unit is the pixel, (0, 0) the centre of the first; it
   /// wraps around horizontally and is continued by the last row at the poles.
-  Spectrum interpolate(float x, float y) const {
+  [[gnu::always_inline]] Spectrum interpolate(float x, float y) const {
     // Not below -1, so that truncating x + 1 rounds x down.
     int column0 = static_cast<int>(x + 1.0F) - 1;
     const int above = static_cast<int>(y + 1.0F) - 1;

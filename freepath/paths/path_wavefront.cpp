@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
 #include "freepath/tracking/reference/stop_scope.h"
@@ -175,8 +176,18 @@ PathWavefront::SamplePlace PathWavefront::place_of(const PathJob& job, std::size
           job.first_sample + place % job.samples};
 }
 
+std::array<float, 2> PathWavefront::film_pair(const SampleSequence& numbers, uint32_t pixel,
+                                              uint32_t sample) {
+  if (scene_.samples != SampleKind::kSobol) return numbers.pair(kFilmDimension);
+  if (pixel != hashed_pixel_) {
+    film_hashes_ = SampleSequence::hashes(setup_.seed, pixel, kFilmDimension);
+    hashed_pixel_ = pixel;
+  }
+  return SampleSequence::sobol_pair(film_hashes_, sample);
+}
+
 void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
-  path = {};
+  std::construct_at(&path);
   path.job = newest_;
   const auto number = static_cast<uint32_t>(path_number);
   const auto per_sample = static_cast<uint32_t>(setup_.factory->paths_per_sample());
@@ -200,7 +211,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
 
   // The channels' paths of a sample share its place on the film.
   const SampleSequence numbers(scene_.samples, setup_.seed, path.pixel, sample_number);
-  const auto film = numbers.pair(kFilmDimension);
+  const auto film = film_pair(numbers, path.pixel, sample_number);
   const FilterSample filtered = scene_.filter.sample(film[0], film[1]);
   const auto width = static_cast<uint32_t>(scene_.camera->width());
   const float x = static_cast<float>(path.pixel % width) + 0.5F + filtered.x;

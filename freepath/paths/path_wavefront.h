@@ -1,6 +1,7 @@
 #pragma once
 /// @file A wavefront of paths through a scene of media, surfaces and lights.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -77,6 +78,8 @@ class PathWavefront {
   };
   /// @param number of the job's samples, pixel by pixel
   SamplePlace place_of(const PathJob& job, std::size_t number) const;
+  /// The numbers of a sample's place on the film; those of a pixel often follow each other.
+  std::array<float, 2> film_pair(const SampleSequence& numbers, uint32_t pixel, uint32_t sample);
   /// @param path_number of the newest job's paths
   void start_path(std::size_t path_number, ScenePath& path);
   /// Takes in the paths that have ended, and the jobs that have with them; others start in their
@@ -195,6 +198,8 @@ class PathWavefront {
   std::vector<uint32_t> order_;
   std::vector<uint32_t> sets_, begin_of_set_;     // for that order
   const PathColors* colors_of_sample_ = nullptr;  // of the sample whose paths start now
+  uint32_t hashed_pixel_ = UINT32_MAX;
+  SampleSequence::Hashes film_hashes_{};  // of that pixel
   bool records_spectra_ = false;
   PixelWindow window_;  // of the film at work
   PathCounts counts_;

@@ -81,8 +81,8 @@ Camera spherical(const View& view, UpAxis up, int width, int height) {
   }
   ahead.normalize();
   const Vec3d right = ahead.cross(above);
-  return {SphericalCamera{SphericalMapping::kEquirectangular}, rows(-ahead, above, -right, view.from),
-          width, height};
+  return {SphericalCamera{SphericalMapping::kEquirectangular},
+          rows(-ahead, above, -right, view.from), width, height};
 }
 
 Camera camera_of(std::span<const Vec3d> points, const CameraOptions& options, UpAxis up) {

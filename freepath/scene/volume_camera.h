@@ -22,9 +22,9 @@ struct CameraOptions {
   CameraKind kind = CameraKind::kPerspective;
   int width = 640;
   int height = 360;
-  double fov = 40;            ///< Vertical [degrees].
-  std::optional<Vec3d> from;  ///< [world]
-  std::optional<Vec3d> at;    ///< [world]
+  double fov = 40;                 ///< Vertical [degrees].
+  std::optional<Vec3d> from = {};  ///< [world]
+  std::optional<Vec3d> at = {};    ///< [world]
 };
 
 /// @param medium what to frame where the options name no position

@@ -189,19 +189,20 @@ Camera::Projective::Projective(const ScreenWindow& screen, double screen_scale, 
   corner = x * (film_scale * screen.x_min) + y * (film_scale * screen.y_max);
   step_x = x * (film_scale * (screen.x_max - screen.x_min) / width);
   step_y = y * (film_scale * (screen.y_min - screen.y_max) / height);
+  corner_direction = Vec3f(corner);
+  direction_x = Vec3f(step_x);
+  direction_y = Vec3f(step_y);
   lens_x = Vec3f(x * lens.radius);
   lens_y = Vec3f(y * lens.radius);
 }
 
 CameraRay Camera::Projective::ray(float film_x, float film_y, float lens_u, float lens_v) const {
-  const Vec3d film =
-      corner + step_x * static_cast<double>(film_x) + step_y * static_cast<double>(film_y);
   Vec3d start = origin;
   Vec3f direction = ahead;
   if (is_parallel) {
-    start += film;
+    start += corner + step_x * static_cast<double>(film_x) + step_y * static_cast<double>(film_y);
   } else {
-    direction += Vec3f(film);
+    direction += corner_direction + direction_x * film_x + direction_y * film_y;
   }
   if (has_lens) {
     // The ray still meets the plane in focus where the one through the lens' centre does.
@@ -210,7 +211,7 @@ CameraRay Camera::Projective::ray(float film_x, float film_y, float lens_u, floa
     start += Vec3d(lens);
     direction -= lens * focus;
   }
-  return {start, direction.normalized()};
+  return {start, direction * (1.0F / std::sqrt(direction.length2()))};
 }
 
 CameraRay Camera::Spherical::ray(float film_x, float film_y) const {

@@ -119,8 +119,11 @@ class Camera {
     float focus;   // 1 / distance of the plane in focus [1/world]
     Vec3d origin;  // of the camera
     Vec3f ahead;
+    // Parallel rays begin at points of the film; of others it is the direction through them.
     Vec3d corner;          // of the film, from its point on the axis
     Vec3d step_x, step_y;  // from one pixel to the next
+    Vec3f corner_direction;
+    Vec3f direction_x, direction_y;
     Vec3f lens_x, lens_y;  // radii of the lens
 
    private:

@@ -26,13 +26,19 @@ constexpr uint32_t scramble_reversed(uint32_t reversed, uint32_t hash) {
   return reverse_bits(reversed);
 }
 
-/// Hashes for the order, the first and the second coordinate.
-std::array<uint32_t, 4> hashes(uint64_t seed, uint32_t pixel, uint32_t dimension) {
-  return philox({0, kHashStreams + dimension, 0, pixel},
-                {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
+}  // namespace
+
+SampleSequence::Hashes SampleSequence::hashes(uint64_t seed, uint32_t pixel, uint32_t dimension) {
+  const auto words = philox({0, kHashStreams + dimension, 0, pixel},
+                            {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)});
+  return {words[0], words[1], words[2]};
 }
 
-}  // namespace
+std::array<float, 2> SampleSequence::sobol_pair(const Hashes& hashes, uint32_t sample) {
+  const uint32_t index = scramble_reversed(reverse_bits(sample), hashes.order);
+  return {uniform_from_bits(scramble_reversed(index, hashes.first)),
+          uniform_from_bits(scramble_reversed(sobol_second_reversed(index), hashes.second))};
+}
 
 std::array<float, 2> SampleSequence::pair(uint32_t dimension) const {
   if (kind_ == SampleKind::kIndependent) {
@@ -40,19 +46,14 @@ std::array<float, 2> SampleSequence::pair(uint32_t dimension) const {
     const float first = stream.uniform();
     return {first, stream.uniform()};
   }
-  const auto [order, first, second, unused] = hashes(seed_, pixel_, dimension);
-  const uint32_t index = scramble_reversed(reverse_bits(sample_), order);
-  return {uniform_from_bits(scramble_reversed(index, first)),
-          uniform_from_bits(scramble_reversed(sobol_second_reversed(index), second))};
+  return sobol_pair(hashes(seed_, pixel_, dimension), sample_);
 }
 
 float SampleSequence::single(uint32_t dimension) const {
   if (kind_ == SampleKind::kIndependent) {
     return RandomStream(seed_, pixel_, sample_, kSampleStreams + dimension).uniform();
   }
-  const auto [order, first, second, unused] = hashes(seed_, pixel_, dimension);
-  return uniform_from_bits(
-      scramble_reversed(scramble_reversed(reverse_bits(sample_), order), first));
+  return sobol_pair(hashes(seed_, pixel_, dimension), sample_)[0];
 }
 
 }  // namespace freepath

@@ -35,6 +35,14 @@ class SampleSequence {
   /// One number: the first of the pair.
   float single(uint32_t dimension) const;
 
+  /// What all samples of a pixel have in common in a dimension, with kSobol.
+  struct Hashes {
+    uint32_t order, first, second;
+  };
+  static Hashes hashes(uint64_t seed, uint32_t pixel, uint32_t dimension);
+  /// The pair of a sample.
+  static std::array<float, 2> sobol_pair(const Hashes& hashes, uint32_t sample);
+
  private:
   SampleKind kind_;
   uint64_t seed_;

@@ -68,8 +68,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   return settings;
 }
 
-inline Picture picture_of(const BuiltScene& built, const PictureOptions& options) {
-  const RenderResult result = render_scene(built.scene, options.mode, settings_of(built, options));
+inline Picture picture_of(const RenderResult& result) {
   Picture picture;
   picture.image = result.film.to_image();
   picture.overflows = result.overflows;
@@ -90,6 +89,10 @@ inline Picture picture_of(const BuiltScene& built, const PictureOptions& options
     picture.error[c] = std::sqrt(picture.error[c]) / pixels;
   }
   return picture;
+}
+
+inline Picture picture_of(const BuiltScene& built, const PictureOptions& options) {
+  return picture_of(render_scene(built.scene, options.mode, settings_of(built, options)));
 }
 
 /// Parses, builds and renders a scene.

@@ -7,7 +7,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/materials/fresnel.h"
-#include "tests/render/materials_for_tests.h"
+#include "tests/materials/materials_for_tests.h"
 #include "tests/statistics.h"
 
 namespace freepath::testing {

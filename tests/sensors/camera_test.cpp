@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "freepath/base/error.h"
-#include "tests/render/expect_near.h"
+#include "tests/expect_near.h"
 
 namespace freepath {
 namespace {

@@ -12,7 +12,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
 #include "freepath/scene/pbrt/transform.h"
-#include "tests/render/expect_near.h"
+#include "tests/expect_near.h"
 #include "tests/statistics.h"
 
 namespace freepath {

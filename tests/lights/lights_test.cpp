@@ -17,7 +17,7 @@
 #include "freepath/base/random.h"
 #include "freepath/lights/sky.h"
 #include "freepath/spectra/rgb_color_space.h"
-#include "tests/render/expect_near.h"
+#include "tests/expect_near.h"
 #include "tests/statistics.h"
 
 namespace freepath {

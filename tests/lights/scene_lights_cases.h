@@ -15,7 +15,7 @@
 #include "freepath/lights/sky.h"
 #include "freepath/spectra/blackbody.h"
 #include "freepath/spectra/rgb_spectrum.h"
-#include "tests/render/emitter_shapes.h"
+#include "tests/lights/emitter_shapes.h"
 
 namespace freepath::testing {
 

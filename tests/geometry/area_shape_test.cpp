@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "freepath/geometry/spherical_triangle.h"
-#include "tests/render/surface_rays.h"
-#include "tests/render/surface_references.h"
+#include "tests/geometry/surface_rays.h"
+#include "tests/geometry/surface_references.h"
 #include "tests/statistics.h"
 
 namespace freepath::testing {

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "freepath/lights/octahedral_environment.h"
-#include "tests/render/scene_lights_cases.h"
+#include "tests/lights/scene_lights_cases.h"
 #include "tests/statistics.h"
 
 namespace freepath {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "tests/render/slab_quantities.h"
+#include "tests/paths/slab_quantities.h"
 
 namespace freepath::testing {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/geometry/surfaces.h"
-#include "tests/render/surface_rays.h"
+#include "tests/geometry/surface_rays.h"
 
 namespace freepath::testing {
 

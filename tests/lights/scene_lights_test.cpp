@@ -13,7 +13,7 @@
 
 #include "freepath/lights/photometry.h"
 #include "freepath/spectra/wavelengths.h"
-#include "tests/render/scene_lights_cases.h"
+#include "tests/lights/scene_lights_cases.h"
 #include "tests/statistics.h"
 
 namespace freepath {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "freepath/paths/slab.h"
-#include "tests/render/slab_quantities.h"
+#include "tests/paths/slab_quantities.h"
 
 namespace freepath::testing {
 namespace {

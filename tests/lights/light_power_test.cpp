@@ -12,7 +12,7 @@
 #include "freepath/lights/photometry.h"
 #include "freepath/lights/scene_lights.h"
 #include "freepath/spectra/illuminants.h"
-#include "tests/render/scene_lights_cases.h"
+#include "tests/lights/scene_lights_cases.h"
 
 namespace freepath {
 namespace {

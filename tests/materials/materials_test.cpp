@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "tests/render/materials_for_tests.h"
+#include "tests/materials/materials_for_tests.h"
 #include "tests/statistics.h"
 
 namespace freepath::testing {

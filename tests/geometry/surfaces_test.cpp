@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "tests/render/surface_rays.h"
-#include "tests/render/surface_references.h"
+#include "tests/geometry/surface_rays.h"
+#include "tests/geometry/surface_references.h"
 
 namespace freepath::testing {
 

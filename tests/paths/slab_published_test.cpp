@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/render/slab_quantities.h"
+#include "tests/paths/slab_quantities.h"
 
 namespace freepath::testing {
 namespace {
