@@ -191,6 +191,8 @@ CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
   camera.width = size.width;
   camera.height = size.height;
   camera.fov = options.fov;
+  // From below one would see the ground's underside.
+  if (!options.ground.empty()) camera.elevation = -kFramingElevation;
   if (options.look_at.empty()) return camera;
   const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
   if (numbers.size() != 3 && numbers.size() != 6) {

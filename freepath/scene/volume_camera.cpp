@@ -8,7 +8,6 @@
 
 #include "freepath/base/error.h"
 #include "freepath/media/brick_map.h"
-#include "freepath/sensors/framing.h"
 
 namespace freepath {
 namespace {
@@ -87,7 +86,7 @@ Camera spherical(const View& view, UpAxis up, int width, int height) {
 
 Camera camera_of(std::span<const Vec3d> points, const CameraOptions& options, UpAxis up) {
   const double aspect = static_cast<double>(options.width) / options.height;
-  View view = frame_points(points, up, options.fov, aspect);
+  View view = frame_points(points, up, options.fov, aspect, options.elevation);
   if (options.from) view.from = *options.from;
   if (options.at) view.at = *options.at;
   view.up = picture_up(view.at - view.from, up);

@@ -7,6 +7,7 @@
 #include "freepath/base/vector.h"
 #include "freepath/media/medium.h"
 #include "freepath/sensors/camera.h"
+#include "freepath/sensors/framing.h"
 
 namespace freepath {
 
@@ -22,7 +23,9 @@ struct CameraOptions {
   CameraKind kind = CameraKind::kPerspective;
   int width = 640;
   int height = 360;
-  double fov = 40;                 ///< Vertical [degrees].
+  double fov = 40;  ///< Vertical [degrees].
+  /// Of the camera as seen from what it frames [degrees].
+  double elevation = kFramingElevation;
   std::optional<Vec3d> from = {};  ///< [world]
   std::optional<Vec3d> at = {};    ///< [world]
 };

@@ -25,7 +25,8 @@ CameraAxes camera_axes(const Vec3d& forward, const Vec3d& up) {
 
 }  // namespace
 
-View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect) {
+View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect,
+                  double elevation) {
   Box3d bounds;
   for (const Vec3d& point : points) {
     bounds.extendBy(point);
@@ -40,7 +41,7 @@ View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double a
   constexpr double kMargin = 0.05;  // of the picture, on each side
   const double extent_y = half_extent(fov) * (1 - 2 * kMargin);
   const double extent_x = extent_y * aspect;
-  const Vec3d back(sky_direction(kFramingElevation, kFramingAzimuth, up));
+  const Vec3d back(sky_direction(elevation, kFramingAzimuth, up));
   const Vec3d up_world(up_vector(up));
   const CameraAxes axes = camera_axes(-back, up_world);
   const Vec3d centre = bounds.center();

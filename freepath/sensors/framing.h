@@ -19,9 +19,11 @@ inline constexpr double kFramingElevation = -12;  // [degrees]
 /// @param points what to show [world]
 /// @param fov vertical angle of view [degrees]
 /// @param aspect width / height of the film
+/// @param elevation of the camera as seen from the points [degrees]
 /// @throws Error for no points, points that are all one or infinite, an angle not in (0, 180), an
 ///   aspect that is not positive
-View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect);
+View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect,
+                  double elevation = kFramingElevation);
 
 /// A view of the whole box, as close as that allows but for a margin of 5 % of the picture.
 /// @param bounds what to show [world]
