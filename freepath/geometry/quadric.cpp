@@ -177,7 +177,9 @@ Vec3d Quadric::sample(double u0, double u1) const {
       z += u1 * (z_max_ - z_min_);
       break;
   }
-  return {distance * std::cos(phi), distance * std::sin(phi), z};
+  // In single precision: what is drawn is put onto the surface by describe().
+  const auto angle = static_cast<float>(phi);
+  return {distance * std::cos(angle), distance * std::sin(angle), z};
 }
 
 }  // namespace freepath

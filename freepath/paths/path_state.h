@@ -49,6 +49,15 @@ struct ScenePath {
   int channel = -1;     ///< The one channel that it carries, or -1.
   uint64_t lookups = 0;
   float distance = 0;  ///< Flown from the camera, until the first event [world].
+
+  /// The mean over the channels that it carries.
+  float mean(const Channels& values) const {
+    if (channel >= 0) return values[channel];
+    const int channels = colors->spectra.channels();
+    float sum = 0;
+    for (int c = 0; c < channels; ++c) sum += values[c];
+    return sum / static_cast<float>(channels);
+  }
 };
 
 }  // namespace freepath

@@ -24,7 +24,8 @@ VolumeMedium cube(const Spectrum& sigma_a, const Spectrum& sigma_s,
                   const Vec3d& centre = Vec3d(0)) {
   Matrix4d index_to_world;
   index_to_world.setScale(Vec3d(0.125));
-  index_to_world *= Matrix4d().setTranslation(centre);
+  // The centre of voxel 0 is at half a voxel.
+  index_to_world *= Matrix4d().setTranslation(centre + Vec3d(0.0625));
   Component component;
   component.density = make_field(
       Vec3i(-8), Vec3i(7), [](const Vec3i&) { return 1.0F; }, index_to_world);
@@ -141,8 +142,26 @@ TEST(VolumeCamera, AnOrthographicOneKeepsSizes) {
   }
 }
 
-// From its middle a side of a cube fills a sixth of the sphere: seen from a place in front of a
-// face, as far away as half its edge, nothing but that side of a large cube is there.
+// Between voxels linearly, a cube fades over half a voxel beyond its faces, and is seen there.
+TEST(VolumeCamera, SeesAMediumAsFarAsItsFilterReaches) {
+  constexpr double kHalfVoxel = 0.0625;
+  Matrix4d along_x;  // looks along +x, the film around y = 1 and what lies above
+  along_x = Matrix4d(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, -9, 1 + kHalfVoxel / 2, 0, 1);
+  OrthographicCamera strip;
+  strip.screen_window = {-0.5, 0.5, -kHalfVoxel / 4, kHalfVoxel / 4};
+  const Camera camera(strip, along_x, 4, 4);
+  const PathScene scene =
+      make_volume_scene(cube(Spectrum(1e4F), Spectrum(0.0F)), camera, {Spectrum(1.0F)});
+  for (const Interpolation interpolation :
+       {Interpolation::kNearest, Interpolation::kTrilinear, Interpolation::kStochastic}) {
+    RenderSettings settings;
+    settings.samples = 16;
+    settings.walk.interpolation = interpolation;
+    const Picture picture = picture_of(render_scene(scene, ColorMode::kRgb, settings));
+    EXPECT_NEAR(picture.mean[1], interpolation == Interpolation::kNearest ? 1 : 0, 1e-6);
+  }
+}
+
 TEST(VolumeCamera, ASphericalOneHasItsTargetInTheMiddleAndTheHorizonLevel) {
   for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
     const Vec3d above(up_vector(up));
