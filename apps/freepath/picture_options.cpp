@@ -219,6 +219,7 @@ std::optional<Ground> read_ground(const PictureOptions& options) {
   const bool is_coloured = numbers.size() > 2;
   ground.albedo = is_coloured ? spectrum_of(numbers, 0) : Spectrum(static_cast<float>(numbers[0]));
   if (numbers.size() % 2 == 0) ground.height = numbers.back();
+  read_option("--ground", [&] { check(ground); });
   return ground;
 }
 

@@ -16,16 +16,22 @@ constexpr double kReach = 1e5;
 
 }  // namespace
 
-void add_ground(const Ground& ground, const Box3d& extent, const Vec3d& camera, PathScene& scene,
-                SurfaceScene& surfaces) {
+void check(const Ground& ground) {
   for (int channel = 0; channel < kChannels; ++channel) {
     const float albedo = ground.albedo[channel];
     if (albedo >= 0 && albedo <= 1) continue;
     fail("the albedo of the ground is {} in channel {}; it must lie in 0 to 1", albedo, channel);
   }
+  if (ground.height && !std::isfinite(*ground.height)) {
+    fail("the height of the ground is {}; it must be finite", *ground.height);
+  }
+}
+
+void add_ground(const Ground& ground, const Box3d& extent, const Vec3d& camera, PathScene& scene,
+                SurfaceScene& surfaces) {
+  check(ground);
   const int up = ground.up == UpAxis::kY ? 1 : 2;
   const double height = ground.height.value_or(extent.min[up]);
-  if (!std::isfinite(height)) fail("the height of the ground is {}; it must be finite", height);
   Box3d all = extent;
   all.extendBy(camera);
   Vec3d centre = all.center();

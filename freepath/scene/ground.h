@@ -19,11 +19,14 @@ struct Ground {
   UpAxis up = UpAxis::kY;
 };
 
+/// @throws Error for an albedo not in [0, 1] or a height that is not finite
+void check(const Ground& ground);
+
 /// Adds the plane to a scene whose surfaces are still to be made. It reaches 1e5 times as far as
 /// all else.
 /// @param extent of all else but the camera [world]
 /// @param camera its place [world]
-/// @throws Error for an albedo not in [0, 1] or a height that is not finite
+/// @throws Error as check
 void add_ground(const Ground& ground, const Box3d& extent, const Vec3d& camera, PathScene& scene,
                 SurfaceScene& surfaces);
 

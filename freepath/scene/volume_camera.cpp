@@ -115,14 +115,4 @@ Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up
   return camera_of(corners, options, up);
 }
 
-Camera make_camera(const Box3d& box, const CameraOptions& options, UpAxis up) {
-  std::vector<Vec3d> corners;
-  for (int corner = 0; corner < 8; ++corner) {
-    corners.emplace_back((corner & 1) != 0 ? box.max.x : box.min.x,
-                         (corner & 2) != 0 ? box.max.y : box.min.y,
-                         (corner & 4) != 0 ? box.max.z : box.min.z);
-  }
-  return camera_of(corners, options, up);
-}
-
 }  // namespace freepath

@@ -34,7 +34,4 @@ struct CameraOptions {
 /// @throws Error as Camera and frame_points
 Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up);
 
-/// The same of what fills a box.
-Camera make_camera(const Box3d& box, const CameraOptions& options, UpAxis up);
-
 }  // namespace freepath

@@ -135,8 +135,7 @@ TEST(VolumeCamera, AnOrthographicOneKeepsSizes) {
       options.fov = 2 * std::atan(2 / distance) * 180 / std::numbers::pi;  // 4 high
       options.from = up == UpAxis::kY ? Vec3d(0, 0, distance) : Vec3d(0, -distance, 0);
       options.at = Vec3d(0);
-      EXPECT_NEAR(covered(make_camera(Box3d(Vec3d(-1), Vec3d(1)), options, up)), 4.0 / (4 * 12),
-                  5e-4)
+      EXPECT_NEAR(covered(make_camera(*nothing().medium, options, up)), 4.0 / (4 * 12), 5e-4)
           << distance;
     }
   }
@@ -168,7 +167,7 @@ TEST(VolumeCamera, ASphericalOneHasItsTargetInTheMiddleAndTheHorizonLevel) {
     CameraOptions options{.kind = CameraKind::kSpherical, .width = 2 * kSize, .height = kSize};
     options.from = Vec3d(20, 0, 0) + above * 7;
     options.at = above * 9;
-    const Camera camera = make_camera(Box3d(Vec3d(-1), Vec3d(1)), options, up);
+    const Camera camera = make_camera(*nothing().medium, options, up);
     const auto direction = [&](float x, float y) {
       return camera.ray(x * 2 * kSize, y * kSize).direction;
     };
