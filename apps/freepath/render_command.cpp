@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/freepath/commands.h"
+#include "apps/freepath/console.h"
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/frames.h"
 #include "apps/freepath/parse.h"

@@ -182,7 +182,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   const uint32_t ordered = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
   const auto [picture_pixel, sample_number] = place_of(jobs_[newest_].job, ordered);
-  path.result = static_cast<uint32_t>(jobs_[newest_].first + ordered * per_sample) + channel;
+  path.result = static_cast<uint32_t>(jobs_[newest_].first) + ordered * per_sample + channel;
   path.pixel = picture_pixel;
   path.sample_key = sample_number * per_sample + channel;
   // The paths of a sample start one after the other.
