@@ -230,7 +230,9 @@ BuildOptions read_build_options(const CLI::App& command, const PictureOptions& o
   build.ground = read_ground(options);
   const bool has_environment = command.count("--environment") > 0;
   if (has_environment || command.count("--sun") > 0) {
-    build.surroundings = make_surroundings(read_lights(options), read_up(options), &warnings);
+    LightOptions lights = read_lights(options);
+    if (!has_environment) lights.environment = Spectrum(0.0F);  // no sky is made in vain
+    build.surroundings = make_surroundings(lights, read_up(options), &warnings);
     if (!has_environment) build.surroundings.environment.reset();
   }
   // Read as those of a volume alone are.
@@ -307,6 +309,14 @@ void check_scene_options(const CLI::App& command, const PictureOptions& options)
     if (option != nullptr && option->count() > 0) {
       fail("{} is for volumes: of a scene its file says that", name);
     }
+  }
+  const auto given = [&](const char* name) { return command.count(name) > 0; };
+  const bool has_lights = given("--environment") || given("--sun");
+  if (given("--turbidity") && !has_lights) {
+    fail("--turbidity is that of --environment sky or of the --sun; give one of them for a scene");
+  }
+  if (given("--up") && !has_lights && !given("--ground")) {
+    fail("--up is for --environment, --sun and --ground; give one of them for a scene");
   }
   for (const std::string& value : options.emission) {
     if (!looks_numeric(value)) continue;

@@ -54,9 +54,9 @@ LightOptions read_lights(const PictureOptions& options);
 /// @throws Error, too, for a picture that memory can't hold
 CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film);
 UpAxis read_up(const PictureOptions& options);
-/// None where none is asked for.
+/// The ground that is asked for, if one is.
 std::optional<Ground> read_ground(const PictureOptions& options);
-/// What the options say of a scene, whose file says the rest.
+/// Options that change or add to what the file of a scene says.
 /// @param warnings gets what there is to say about an image
 BuildOptions read_build_options(const CLI::App& command, const PictureOptions& options,
                                 std::vector<std::string>& warnings);

@@ -151,8 +151,7 @@ void run(const CLI::App& command, const RenderOptions& options) {
       .color = read_color(options.picture, ColorMode::kRgb),
       .super_voxel = options.picture.super_voxel,
       .look = read_look(options, ViewTransform::kNeutral)};
-  for (const std::string& warning : warnings)
-    fmt::print(stderr, "freepath: warning: {}\n", warning);
+  for (const std::string& warning : warnings) warn("{}", warning);
   if (options.frames.empty()) {
     render_picture(plan, pictures.front());
   } else {

@@ -38,7 +38,7 @@ VolumeMedium load_medium(const RenderPlan& plan, const PictureFiles& files, Rend
   return medium;
 }
 
-/// What stays the same in a sequence.
+/// Camera and ground, which stay the same in a sequence.
 struct Stage {
   Camera camera;
   std::optional<Ground> ground;
@@ -46,9 +46,7 @@ struct Stage {
 
 Stage make_stage(const RenderPlan& plan, const Medium& medium) {
   Stage stage{make_camera(medium, plan.camera, plan.up), plan.ground};
-  if (stage.ground && !stage.ground->height) {
-    stage.ground->height = medium.world_bounds().min[plan.up == UpAxis::kY ? 1 : 2];
-  }
+  if (stage.ground) stage.ground->height = height_under(medium.world_bounds(), *stage.ground);
   return stage;
 }
 

@@ -47,6 +47,17 @@ std::string digest_of(const CLI::App& command, const std::vector<std::filesystem
   return digest.hex();
 }
 
+/// Files that options name, besides the volumes or the scene.
+std::vector<std::filesystem::path> files_of_options(const PictureOptions& options) {
+  std::vector<std::filesystem::path> files;
+  const LightOptions lights = read_lights(options);
+  if (const auto* image = std::get_if<std::string>(&lights.environment)) files.emplace_back(*image);
+  for (const std::string& phase : options.volumes.phase) {
+    for (const auto& file : phase_function_files(phase)) files.push_back(file);
+  }
+  return files;
+}
+
 /// Renders the subject by a scene.
 void set_renderers(Subject& subject, const std::shared_ptr<PathScene>& scene, ColorMode color) {
   subject.render = [scene, color](const RenderSettings& settings,
@@ -69,18 +80,12 @@ LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions&
   // All that can be wrong with the options is said before a file is read.
   read_up(options);
   read_camera(options, FilmPlan());
-  const LightOptions lights = read_lights(options);
+  read_lights(options);
   std::vector<VolumeReport> report;
   LoadedSubject loaded = subject_of_medium(
       options, make_medium(load_volumes(read_volumes(options), report), options.super_voxel), size);
-  std::vector<std::filesystem::path> files(options.volumes.files.begin(),
-                                           options.volumes.files.end());
-  if (const auto* image = std::get_if<std::string>(&lights.environment)) {
-    files.emplace_back(*image);
-  }
-  for (const std::string& phase : options.volumes.phase) {
-    for (const auto& file : phase_function_files(phase)) files.push_back(file);
-  }
+  std::vector<std::filesystem::path> files = files_of_options(options);
+  files.insert(files.begin(), options.volumes.files.begin(), options.volumes.files.end());
   loaded.subject.digest = digest_of(command, files);
   return loaded;
 }
@@ -125,7 +130,9 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
                         "channels would save";
   Subject& subject = loaded.subject;
   subject.name = names_of(options.volumes.files);
-  subject.digest = digest_of(command, built->files);
+  std::vector<std::filesystem::path> files = files_of_options(options);
+  files.insert(files.begin(), built->files.begin(), built->files.end());
+  subject.digest = digest_of(command, files);
   const RgbColorSpace& space = built->scene.spectra->space();
   subject.chromaticities = RgbChromaticities{space.primaries(), space.white()};
   subject.width = window.width;
@@ -144,8 +151,7 @@ LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volu
   camera_options.height = size.height;
   std::vector<std::string> warnings;
   const Surroundings surroundings = make_surroundings(read_lights(options), up, &warnings);
-  for (const std::string& warning : warnings)
-    fmt::print(stderr, "freepath: warning: {}\n", warning);
+  for (const std::string& warning : warnings) warn("{}", warning);
   LoadedSubject loaded;
   loaded.settings = read_run_settings(options);
   loaded.film = size;

@@ -15,6 +15,9 @@ namespace freepath {
 /// The axis of world space that points up.
 enum class UpAxis { kY, kZ };
 
+/// The number of that axis.
+constexpr int up_index(UpAxis up) { return up == UpAxis::kY ? 1 : 2; }
+
 /// World space → the same vector with y up.
 inline Vec3f to_y_up(const Vec3f& world, UpAxis up) {
   return up == UpAxis::kY ? world : Vec3f(world.x, world.z, -world.y);

@@ -13,8 +13,6 @@ namespace {
 /// Cells of a portal's grid along an axis, for an image.
 int portal_cells(int image_size) { return std::clamp(image_size, 64, 1024); }
 
-Vec3f colour_of(const Spectrum& s) { return {s.x, s.y, s.z}; }
-
 /// Illuminance of a surface whose normal is `up`, by the midpoint rule on the octahedral map.
 template <class Environment>
 double illuminance_of(const Environment& environment, const Vec3f& up, const Vec3d& weights,
@@ -30,7 +28,7 @@ double illuminance_of(const Environment& environment, const Vec3f& up, const Vec
                                      (static_cast<float>(row) + 0.5F) / static_cast<float>(size)});
       const double cosine = d.dot(up);
       if (cosine <= 0) continue;
-      sum += cosine * weights.dot(Vec3d(colour_of(environment.evaluate(d).radiance)));
+      sum += cosine * weights.dot(Vec3d(environment.evaluate(d).radiance));
     }
   }
   return 4 * std::numbers::pi * sum / (static_cast<double>(size) * size);
@@ -74,7 +72,7 @@ void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin) {
     radiance = std::move(image);
   } else {
     ImageEnvironment image(without_negative(std::move(light.image.pixels)), UpAxis::kY, name);
-    fluence = weights.dot(Vec3d(colour_of(image.fluence())));
+    fluence = weights.dot(Vec3d(image.fluence()));
     if (light.illuminance) illuminance = illuminance_of(image, {0, 1, 0}, weights, size);
     radiance = std::move(image);
   }
@@ -85,9 +83,9 @@ void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin) {
     const auto brightness = [&](const Vec3f& direction) {
       const Vec3f d = frame.to_light(direction).normalized();
       const auto* const octahedral = std::get_if<OctahedralEnvironment>(&result.radiance);
-      return weights.dot(Vec3d(colour_of(
+      return weights.dot(Vec3d(
           octahedral ? octahedral->evaluate(d).radiance
-                     : std::get_if<ImageEnvironment>(&result.radiance)->evaluate(d).radiance)));
+                     : std::get_if<ImageEnvironment>(&result.radiance)->evaluate(d).radiance));
     };
     result.portal.emplace(*light.portal, origin, brightness, portal_cells(size), light.name);
   }
@@ -98,7 +96,7 @@ void InfiniteLights::add(ImageInfiniteLight light, const Vec3d& origin) {
 void InfiniteLights::add(EnvironmentLight light) {
   const double factor = light_factor(light.scale, {}, 0, light.name);
   const double fluence =
-      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(colour_of(light.environment.fluence())));
+      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(light.environment.fluence()));
   if (!(fluence * factor > 0)) return;
   Light result{std::move(light.environment), static_cast<float>(factor)};
   result.importance = fluence * factor;
@@ -108,7 +106,7 @@ void InfiniteLights::add(EnvironmentLight light) {
 void InfiniteLights::add(const SunLight& light) {
   const double factor = light_factor(light.scale, {}, 0, light.name);
   const double irradiance =
-      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(colour_of(light.sun.irradiance())));
+      luminance_weights(rgb_color_space("srgb")).dot(Vec3d(light.sun.irradiance()));
   if (!(irradiance * factor > 0)) return;
   Light result{light.sun, static_cast<float>(factor)};
   result.importance = irradiance * factor;
@@ -138,12 +136,12 @@ Channels InfiniteLights::plain_radiance(const Light& light, const Vec3f& towards
   if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
     const LightValue value = image->evaluate(towards);
     pdf = value.pdf;
-    return values.illuminant(colour_of(value.radiance)) * light.scale;
+    return values.illuminant(value.radiance) * light.scale;
   }
   if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
     if (!sun->contains(towards)) return {};
     pdf = sun->pdf();
-    return values.illuminant(colour_of(sun->radiance())) * light.scale;
+    return values.illuminant(sun->radiance()) * light.scale;
   }
   if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
     pdf = kUniformSpherePdf;
@@ -151,7 +149,7 @@ Channels InfiniteLights::plain_radiance(const Light& light, const Vec3f& towards
   }
   const LightValue value = std::get_if<OctahedralEnvironment>(&light.radiance)->evaluate(towards);
   pdf = value.pdf;
-  return values.illuminant(colour_of(value.radiance)) * light.scale;
+  return values.illuminant(value.radiance) * light.scale;
 }
 
 LightSeen InfiniteLights::evaluate_framed(const Light& light, const Vec3f& from,

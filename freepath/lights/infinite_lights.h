@@ -62,7 +62,7 @@ class InfiniteLights {
     bool is_drawn() const { return portal || !std::holds_alternative<Constant>(radiance); }
   };
 
-  /// Of a light as if it had neither frame nor portal.
+  /// Radiance of a light as if it had neither frame nor portal.
   /// @param pdf set to the density of drawing the direction, if there is any [1/sr]
   static Channels plain_radiance(const Light& light, const Vec3f& towards,
                                  const SpectrumValues& values, float& pdf);

@@ -11,6 +11,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/random.h"
+#include "freepath/base/reversed_bits.h"
 
 namespace freepath {
 namespace {
@@ -25,13 +26,6 @@ constexpr double kManyPixels = 65536;
 /// Sets whose voxels are copies of their own take memory, of which a block may have so much.
 constexpr uint32_t kFewestSets = 4;
 constexpr std::size_t kLargestBlock = std::size_t{256} << 20;  // [bytes]
-
-uint32_t reversed_bits(uint32_t word) {
-  word = (word & 0x55555555U) << 1 | (word >> 1 & 0x55555555U);
-  word = (word & 0x33333333U) << 2 | (word >> 2 & 0x33333333U);
-  word = (word & 0x0F0F0F0FU) << 4 | (word >> 4 & 0x0F0F0F0FU);
-  return __builtin_bswap32(word);
-}
 
 /// The index in binary, mirrored at the point: [0, 1).
 double van_der_corput(uint32_t index) { return reversed_bits(index) * 0x1p-32; }

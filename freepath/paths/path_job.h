@@ -36,7 +36,7 @@ struct PathJobSource {
   bool overlaps = true;
 };
 
-/// What came of paths.
+/// Counts of paths, and of the walks that they took.
 struct PathCounts {
   WalkStatistics free_paths;   ///< Of the tracker.
   WalkStatistics shadow_rays;  ///< Of the transmittance estimator.

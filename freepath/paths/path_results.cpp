@@ -21,7 +21,8 @@ MediumWalkers::Origin PathWavefront::scatterer_of(const ScenePath& path, std::si
 void PathWavefront::record_medium_event(ScenePath& path, float t,
                                         const MediumWalkers::Origin& scatterer) {
   const SceneMedium& medium = scene_.media[scatterer.medium];
-  // Weighted absorption has put the albedo into each channel's weight: no matter of depth.
+  // Weighted absorption has put the albedo into each channel's weight: no matter of depth. Of a
+  // channel without one nothing is left; it counts as if it had come here by chance alone.
   Channels weight = path.throughput;
   if (setup_.absorption == Absorption::kWeighted) {
     const Channels albedo = medium.albedo(scatterer.component, path.colors->spectra);

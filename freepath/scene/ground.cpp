@@ -27,11 +27,18 @@ void check(const Ground& ground) {
   }
 }
 
+double height_under(const Box3d& extent, const Ground& ground) {
+  if (!ground.height && extent.isEmpty()) {
+    fail("nothing has a bottom that a ground could lie at: give its height");
+  }
+  return ground.height.value_or(extent.min[up_index(ground.up)]);
+}
+
 void add_ground(const Ground& ground, const Box3d& extent, const Vec3d& camera, PathScene& scene,
                 SurfaceScene& surfaces) {
   check(ground);
-  const int up = ground.up == UpAxis::kY ? 1 : 2;
-  const double height = ground.height.value_or(extent.min[up]);
+  const int up = up_index(ground.up);
+  const double height = height_under(extent, ground);
   Box3d all = extent;
   all.extendBy(camera);
   Vec3d centre = all.center();
@@ -49,8 +56,8 @@ void add_ground(const Ground& ground, const Box3d& extent, const Vec3d& camera, 
   plane.needs_uv = false;
   plane.shape = static_cast<uint32_t>(scene.shapes.size());
   surfaces.shapes.push_back(std::move(plane));
-  const RgbSpectrum albedo = RgbSpectrum::reflectance(
-      {ground.albedo.x, ground.albedo.y, ground.albedo.z}, rgb_color_space("srgb"));
+  const RgbSpectrum albedo =
+      RgbSpectrum::reflectance(Vec3d(ground.albedo), rgb_color_space("srgb"));
   const auto material = static_cast<uint32_t>(scene.materials.size());
   scene.materials.emplace_back(
       DiffuseMaterial{scene.spectra->add(albedo, SpectrumRole::kReflectance)});

@@ -22,11 +22,15 @@ struct Ground {
 /// @throws Error for an albedo not in [0, 1] or a height that is not finite
 void check(const Ground& ground);
 
+/// The height that a ground has under something [world].
+/// @throws Error where neither has one
+double height_under(const Box3d& extent, const Ground& ground);
+
 /// Adds the plane to a scene whose surfaces are still to be made. It reaches 1e5 times as far as
 /// all else.
 /// @param extent of all else but the camera [world]
 /// @param camera its place [world]
-/// @throws Error as check
+/// @throws Error as check and height_under
 void add_ground(const Ground& ground, const Box3d& extent, const Vec3d& camera, PathScene& scene,
                 SurfaceScene& surfaces);
 

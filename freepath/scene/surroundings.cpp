@@ -12,8 +12,6 @@
 namespace freepath {
 namespace {
 
-Vec3d colour_vector(const Spectrum& rgb) { return {rgb.x, rgb.y, rgb.z}; }
-
 void check_radiance(const Spectrum& radiance) {
   if (is_finite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0) return;
   fail("the radiance of the environment is {},{},{}; it must be finite and not negative",
@@ -46,8 +44,7 @@ std::vector<LightDescription> to_lights(const Surroundings& surroundings, Spectr
     // The sun alone.
   } else if (const auto* radiance = std::get_if<Spectrum>(&*surroundings.environment)) {
     check_radiance(*radiance);
-    const RgbSpectrum light =
-        RgbSpectrum::illuminant(colour_vector(*radiance), rgb_color_space("srgb"));
+    const RgbSpectrum light = RgbSpectrum::illuminant(Vec3d(*radiance), rgb_color_space("srgb"));
     lights.emplace_back(ConstantInfiniteLight{
         .name = "the environment", .radiance = table.add(light, SpectrumRole::kIlluminant)});
   } else {

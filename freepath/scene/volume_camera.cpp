@@ -49,18 +49,6 @@ Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
   return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
 }
 
-/// A matrix whose rows are the images of the camera's axes and its position.
-Matrix4d rows(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& position) {
-  Matrix4d matrix;
-  for (int axis = 0; axis < 3; ++axis) {
-    matrix[0][axis] = x[axis];
-    matrix[1][axis] = y[axis];
-    matrix[2][axis] = z[axis];
-    matrix[3][axis] = position[axis];
-  }
-  return matrix;
-}
-
 /// The film is as large as what the perspective camera sees where it looks at.
 Camera orthographic(const View& view, int width, int height) {
   const double extent = half_extent(view.fov) * (view.at - view.from).length();
@@ -81,7 +69,7 @@ Camera spherical(const View& view, UpAxis up, int width, int height) {
   ahead.normalize();
   const Vec3d right = ahead.cross(above);
   return {SphericalCamera{SphericalMapping::kEquirectangular},
-          rows(-ahead, above, -right, view.from), width, height};
+          camera_matrix(-ahead, above, -right, view.from), width, height};
 }
 
 Camera camera_of(std::span<const Vec3d> points, const CameraOptions& options, UpAxis up) {

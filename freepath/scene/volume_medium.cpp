@@ -131,12 +131,10 @@ void check_optical_depth(const Medium& medium, const WalkPart& medium_part) {
   }
 }
 
-Vec3d vector_of(const Spectrum& rgb) { return {rgb.x, rgb.y, rgb.z}; }
-
 /// A coefficient of any size. Equal channels are the same at all wavelengths.
 SpectralDistribution coefficient(const Spectrum& rgb, const RgbColorSpace& space) {
   if (rgb.x == rgb.y && rgb.y == rgb.z) return {double{rgb.x}};
-  return RgbSpectrum::unbounded(vector_of(rgb), space);
+  return RgbSpectrum::unbounded(Vec3d(rgb), space);
 }
 
 std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, SpectrumTable& table) {
@@ -159,9 +157,8 @@ std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, Spectru
           "known",
           number);
     } else if (largest(component.emission) > 0) {
-      target.radiance =
-          table.add(RgbSpectrum::illuminant(vector_of(component.emission), table.space()),
-                    SpectrumRole::kIlluminant);
+      target.radiance = table.add(RgbSpectrum::illuminant(Vec3d(component.emission), table.space()),
+                                  SpectrumRole::kIlluminant);
     }
   }
   return spectra;

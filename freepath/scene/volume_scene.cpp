@@ -24,10 +24,8 @@ PathScene make_volume_scene(const VolumeMedium& medium, const Camera& camera,
   scene.lights.emplace(std::move(lights), *scene.spectra);
   if (ground) {
     const Box3d& bounds = scene.media[0].bounds();
-    const float x = 0.5F * static_cast<float>(camera.width());
-    const Vec3d eye = camera.ray(x, 0.5F * static_cast<float>(camera.height())).origin;
     SurfaceScene surfaces;
-    add_ground(*ground, bounds, eye, scene, surfaces);
+    add_ground(*ground, bounds, camera.place(), scene, surfaces);
     scene.surfaces.emplace(surfaces, scene.origin);
     scene.is_clear[0] = !scene.surfaces->intersects_box(std::vector<uint32_t>{0}, bounds);
   }

@@ -125,6 +125,18 @@ PerspectiveCamera pinhole(const View& view, int width, int height) {
 
 }  // namespace
 
+Matrix4d camera_matrix(const Vec3d& right, const Vec3d& up, const Vec3d& ahead,
+                       const Vec3d& position) {
+  Matrix4d matrix;
+  for (int axis = 0; axis < 3; ++axis) {
+    matrix[0][axis] = right[axis];
+    matrix[1][axis] = up[axis];
+    matrix[2][axis] = ahead[axis];
+    matrix[3][axis] = position[axis];
+  }
+  return matrix;
+}
+
 Matrix4d world_from_camera(const View& view) {
   if (!is_finite(view.from) || !is_finite(view.at) || !is_finite(view.up)) {
     fail("the camera's position, target and up vector must be finite numbers");
@@ -145,15 +157,7 @@ Matrix4d world_from_camera(const View& view) {
          view.up.x, view.up.y, view.up.z);
   }
   const Vec3d right = forward.cross(view.up).normalized();
-  const Vec3d up = right.cross(forward);
-  Matrix4d matrix;
-  for (int axis = 0; axis < 3; ++axis) {
-    matrix[0][axis] = right[axis];
-    matrix[1][axis] = up[axis];
-    matrix[2][axis] = forward[axis];
-    matrix[3][axis] = view.from[axis];
-  }
-  return matrix;
+  return camera_matrix(right, right.cross(forward), forward, view.from);
 }
 
 double half_extent(double fov) {

@@ -20,6 +20,10 @@ struct View {
   double fov = 40;      ///< Vertical angle of view [degrees], in (0, 180).
 };
 
+/// The transform of a camera with these axes, to the right, up and ahead, at a position.
+Matrix4d camera_matrix(const Vec3d& right, const Vec3d& up, const Vec3d& ahead,
+                       const Vec3d& position);
+
 /// The transform of a camera that has this view: rows are its axes and position.
 /// @throws Error if `from` and `at` are the same or beyond 1e30, or `up` is parallel to the line of
 ///   sight
@@ -98,6 +102,11 @@ class Camera {
   /// [pixels]. Points a little off the film are meaningful too: filters reach there.
   /// @param lens_u,lens_v uniform in [0, 1), for a point uniform on the lens; its middle otherwise
   CameraRay ray(float film_x, float film_y, float lens_u = 0.5F, float lens_v = 0.5F) const;
+
+  /// Where the ray through the middle of the film begins [world].
+  Vec3d place() const {
+    return ray(0.5F * static_cast<float>(width_), 0.5F * static_cast<float>(height_)).origin;
+  }
 
   /// Whether rays depend on the point of the lens.
   bool has_lens() const;

@@ -9,10 +9,6 @@
 namespace freepath {
 namespace {
 
-bool is_finite_point(const Vec3d& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 /// Right, up and backwards of a camera.
 struct CameraAxes {
   Vec3d right, up, back;
@@ -30,7 +26,7 @@ View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double a
   Box3d bounds;
   for (const Vec3d& point : points) {
     bounds.extendBy(point);
-    if (!is_finite_point(point)) bounds.makeInfinite();
+    if (!std::isfinite(point.x + point.y + point.z)) bounds.makeInfinite();
   }
   if (bounds.isEmpty() || bounds.isInfinite() || !(bounds.size().length() > 0)) {
     fail("can't place the camera: the volume has no finite extent; give a view with --look-at");

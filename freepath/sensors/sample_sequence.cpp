@@ -1,18 +1,12 @@
 #include "freepath/sensors/sample_sequence.h"
 
+#include "freepath/base/reversed_bits.h"
+
 namespace freepath {
 namespace {
 
 // Streams of the hashes of Sobol' points, apart from those of independent numbers.
 constexpr uint32_t kHashStreams = 0xC0000000U;
-
-constexpr uint32_t reverse_bits(uint32_t word) {
-  word = (word >> 16) | (word << 16);
-  word = ((word >> 8) & 0x00FF00FFU) | ((word & 0x00FF00FFU) << 8);
-  word = ((word >> 4) & 0x0F0F0F0FU) | ((word & 0x0F0F0F0FU) << 4);
-  word = ((word >> 2) & 0x33333333U) | ((word & 0x33333333U) << 2);
-  return ((word >> 1) & 0x55555555U) | ((word & 0x55555555U) << 1);
-}
 
 /// A nested uniform scramble of a fraction whose bits are in reverse, and come out in order: a
 /// permutation in which each bit is flipped by a hash of those below it alone, an idea of
@@ -23,7 +17,7 @@ constexpr uint32_t scramble_reversed(uint32_t reversed, uint32_t hash) {
   reversed *= (hash >> 16) | 1U;
   reversed ^= reversed * 0x05526C56U;
   reversed ^= reversed * 0x53A22864U;
-  return reverse_bits(reversed);
+  return reversed_bits(reversed);
 }
 
 }  // namespace
@@ -35,7 +29,7 @@ SampleSequence::Hashes SampleSequence::hashes(uint64_t seed, uint32_t pixel, uin
 }
 
 std::array<float, 2> SampleSequence::sobol_pair(const Hashes& hashes, uint32_t sample) {
-  const uint32_t index = scramble_reversed(reverse_bits(sample), hashes.order);
+  const uint32_t index = scramble_reversed(reversed_bits(sample), hashes.order);
   return {uniform_from_bits(scramble_reversed(index, hashes.first)),
           uniform_from_bits(scramble_reversed(sobol_second_reversed(index), hashes.second))};
 }

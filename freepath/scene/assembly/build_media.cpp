@@ -96,7 +96,7 @@ class MediumReader {
   }
 
   static SpectralDistribution from_rgb(const Spectrum& rgb) {
-    return RgbSpectrum::unbounded({rgb.x, rgb.y, rgb.z}, rgb_color_space("srgb"));
+    return RgbSpectrum::unbounded(Vec3d(rgb), rgb_color_space("srgb"));
   }
 
   float nonnegative(std::string_view name, double otherwise) {

@@ -17,17 +17,11 @@
 namespace freepath {
 namespace {
 
-/// All that has a place, and the camera.
-Box3d extent_of(const BuiltShapes& shapes, const Camera& camera) {
-  Box3d extent;
-  if (!shapes.empty()) {
-    const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
-    if (!bounds.isEmpty()) extent = Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
-  }
-  const float x = 0.5F * static_cast<float>(camera.width());
-  const float y = 0.5F * static_cast<float>(camera.height());
-  extent.extendBy(camera.ray(x, y, 0.5F, 0.5F).origin);
-  return extent;
+/// Of all shapes [world].
+Box3d extent_of(const BuiltShapes& shapes) {
+  if (shapes.empty()) return {};
+  const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
+  return bounds.isEmpty() ? Box3d() : Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
 }
 
 /// Rays know places in single precision, and products of coordinates have to fit it too.
@@ -54,19 +48,6 @@ Vec3d origin_of(const PathScene& scene, const Box3d& extent) {
     }
   }
   return (box.isEmpty() ? extent : box).center();
-}
-
-/// Shapes, and media that have bounds of their own.
-Box3d bounded_extent(const PathScene& scene, const BuiltShapes& shapes) {
-  Box3d extent;
-  if (!shapes.empty()) {
-    const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
-    if (!bounds.isEmpty()) extent = Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
-  }
-  for (const SceneMedium& medium : scene.media) {
-    if (!medium.is_homogeneous()) extent.extendBy(medium.bounds());
-  }
-  return extent;
 }
 
 /// Adds lights from outside of the file, which take the place of some of its own.
@@ -128,20 +109,20 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   build_materials(context);
   BuiltShapes shapes = build_shapes(context);
   leave_out_uv(scene.textures, shapes);
-  const Box3d extent = extent_of(shapes, *scene.camera);
+  Box3d standing = extent_of(shapes);  // and, once they are built, media with bounds of their own
+  Box3d extent = standing;
+  extent.extendBy(scene.camera->place());
   check_places(pbrt, extent, "shapes or the camera");
   build_media(context, extent);
   for (const SceneMedium& medium : scene.media) {
     check_places(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
+    if (!medium.is_homogeneous()) standing.extendBy(medium.bounds());
   }
   scene.origin = origin_of(scene, extent);
   scene.textures.set_origin(scene.origin);
   scene.shapes = shapes.shapes;
   if (options.ground) {
-    const float x = 0.5F * static_cast<float>(scene.camera->width());
-    const float y = 0.5F * static_cast<float>(scene.camera->height());
-    add_ground(*options.ground, bounded_extent(scene, shapes), scene.camera->ray(x, y).origin,
-               scene, shapes.surfaces);
+    add_ground(*options.ground, standing, scene.camera->place(), scene, shapes.surfaces);
   }
   SceneLightsDescription lights;
   lights.lights = build_lights(context);
