@@ -88,14 +88,14 @@ std::vector<Configuration> read_configurations(const CompareOptions& options,
       for (const std::string& interpolation : interpolations) {
         Configuration configuration;
         configuration.tracker = read_tracker(tracker, "--trackers");
-        if (configuration.tracker == kAutoTracker) configuration.tracker = automatic;
+        if (is_automatic(configuration.tracker)) configuration.tracker = automatic;
         configuration.transmittance =
             read_method(transmittance, "--transmittance", transmittance_infos());
         configuration.interpolation = read_interpolation(interpolation);
         if (std::find(configurations.begin(), configurations.end(), configuration) !=
             configurations.end()) {
           fail("--trackers: {} is given twice{}", configuration.tracker,
-               tracker == kAutoTracker ? " (auto stands for it here)" : "");
+               is_automatic(tracker) ? " (auto stands for it here)" : "");
         }
         configurations.push_back(std::move(configuration));
       }

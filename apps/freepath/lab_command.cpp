@@ -72,15 +72,13 @@ std::vector<std::string> read_trackers(const std::string& text) {
   return read_option("--trackers", [&] {
     std::vector<std::string> trackers = split_methods(text);
     for (const std::string& tracker : trackers) {
-      if (tracker != kAutoTracker) parse_method(tracker, tracker_infos());
+      parse_method(tracker, tracker_choices());
     }
     return trackers;
   });
 }
 
 LabOptions read_options(const LabCommandOptions& options) {
-  constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
-                                    Choice<Absorption>{"weighted", Absorption::kWeighted}};
   LabOptions lab;
   for (const std::string& setting : options.settings) {
     check_setting(setting);
@@ -92,7 +90,7 @@ LabOptions read_options(const LabCommandOptions& options) {
   lab.paths = parse_count(options.paths, "--paths", 1000, 1e12);
   lab.seed = options.seed;
   lab.threads = settle_threads(options.threads);
-  lab.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
+  lab.absorption = parse_absorption(options.absorption);
   return lab;
 }
 

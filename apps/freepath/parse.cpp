@@ -105,6 +105,24 @@ void fail_choice(std::string_view text, std::string_view option,
 
 int settle_threads(int wished) { return wished > 0 ? granted_threads(wished) : 0; }
 
+Absorption parse_absorption(std::string_view text) {
+  constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
+                                    Choice<Absorption>{"weighted", Absorption::kWeighted}};
+  return parse_choice(text, "--absorption", kAbsorptions);
+}
+
+void add_run_options(CLI::App& command, const RunOptions& options) {
+  command.add_option("--seed", options.seed, "Seed of the random numbers")
+      ->capture_default_str()
+      ->check(kWholeNumber);
+  command.add_option("--threads", options.threads, "Threads [all]")->check(CLI::Range(1, 1024));
+  command.add_option("--batch", options.batch, "Paths in flight per thread; changes no result")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 20));
+  command.add_option("--simd", options.simd, "best, avx512, avx2, sse4 or one-lane")
+      ->capture_default_str();
+}
+
 void warn_if_biased(const std::string& tracker) {
   const std::string name = parse_method(tracker, tracker_infos()).name;
   for (const MethodInfo& info : tracker_infos()) {

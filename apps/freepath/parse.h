@@ -11,6 +11,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/spectrum.h"
+#include "freepath/tracking/walk_modes.h"
 
 namespace freepath::program {
 
@@ -77,6 +78,19 @@ Value parse_choice(std::string_view text, std::string_view option,
 /// The threads to work on: as many as are wished, or as the system grants if those are fewer.
 /// @param wished 0: as many as the machine has
 int settle_threads(int wished);
+
+/// "analog" or "weighted". @throws Error naming --absorption
+Absorption parse_absorption(std::string_view text);
+
+/// Variables that --seed, --threads, --batch and --simd are written to.
+struct RunOptions {
+  uint64_t& seed;
+  int& threads;
+  std::size_t& batch;
+  std::string& simd;
+};
+/// Adds the options on what paths run on, which change no result but for the seed.
+void add_run_options(CLI::App& command, const RunOptions& options);
 
 /// Prints a warning for a tracker that is biased.
 void warn_if_biased(const std::string& tracker);

@@ -16,9 +16,6 @@ constexpr std::array kInterpolations{
     Choice<Interpolation>{"nearest", Interpolation::kNearest},
     Choice<Interpolation>{"trilinear", Interpolation::kTrilinear},
     Choice<Interpolation>{"stochastic", Interpolation::kStochastic}};
-constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
-                                  Choice<Absorption>{"weighted", Absorption::kWeighted}};
-constexpr std::array kUpAxes{Choice<UpAxis>{"y", UpAxis::kY}, Choice<UpAxis>{"z", UpAxis::kZ}};
 
 EmissionTally read_emission_tally(const PictureOptions& options) {
   constexpr std::array kTallies{Choice<EmissionTally>{"collision", EmissionTally::kCollision},
@@ -30,10 +27,34 @@ EmissionTally read_emission_tally(const PictureOptions& options) {
   return tally;
 }
 
-/// One number or three from a place on.
-Spectrum spectrum_of(const std::vector<double>& numbers, std::size_t first) {
-  const auto at = [&](std::size_t i) { return static_cast<float>(numbers[first + i]); };
-  return numbers.size() < first + 3 ? Spectrum(at(0)) : Spectrum(at(0), at(1), at(2));
+CameraKind read_camera_kind(const PictureOptions& options) {
+  constexpr std::array kKinds{Choice<CameraKind>{"perspective", CameraKind::kPerspective},
+                              Choice<CameraKind>{"orthographic", CameraKind::kOrthographic},
+                              Choice<CameraKind>{"spherical", CameraKind::kSpherical}};
+  return parse_choice(options.camera, "--camera", kKinds);
+}
+
+/// Where --look-at puts the camera and its target, if it is given.
+void read_places(const PictureOptions& options, std::optional<Vec3d>& from,
+                 std::optional<Vec3d>& at) {
+  if (options.look_at.empty()) return;
+  const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
+  if (numbers.size() != 3 && numbers.size() != 6) {
+    fail(
+        "--look-at: '{}' has {}; give the camera's position and perhaps the point it looks "
+        "at: X,Y,Z or X,Y,Z,ATX,ATY,ATZ",
+        options.look_at, counted(numbers.size(), "value"));
+  }
+  from = Vec3d(numbers[0], numbers[1], numbers[2]);
+  if (numbers.size() == 6) at = Vec3d(numbers[3], numbers[4], numbers[5]);
+}
+
+/// Options that change the camera of a scene.
+constexpr const char* kCameraOptions[] = {"--look-at", "--fov", "--camera"};
+
+bool changes_camera(const CLI::App& command) {
+  return std::any_of(std::begin(kCameraOptions), std::end(kCameraOptions),
+                     [&](const char* name) { return command.count(name) > 0; });
 }
 
 void add_light_options(CLI::App& command, PictureOptions& o) {
@@ -73,7 +94,8 @@ void add_camera_options(CLI::App& command, PictureOptions& o) {
   command
       .add_option("--look-at", o.look_at,
                   "Camera position, and perhaps its target: X,Y,Z[,ATX,ATY,ATZ]; by default all "
-                  "of the volume is framed")
+                  "of the volume is framed [of a scene its own; with --fov or --camera alone that "
+                  "one changes where it stands]")
       ->group("Picture");
   command
       .add_option("--camera", o.camera,
@@ -90,6 +112,15 @@ void add_camera_options(CLI::App& command, PictureOptions& o) {
   command.add_option("--fov", o.fov, "Vertical angle of view [degrees]")
       ->capture_default_str()
       ->check(kFiniteNumber)
+      ->group("Picture");
+  command
+      .add_option("--periodic", o.periodic,
+                  "Axes along which volumes or a scene repeat without end, as the domains of "
+                  "atmospheric models do: x,y with --up z, or one of them [none]")
+      ->group("Picture");
+  command
+      .add_option("--domain", o.domain,
+                  "FROM,TO[,FROM,TO] of a period along each of them [those of the active voxels]")
       ->group("Picture");
   command.add_option("--up", o.up, "Axis that points up: y or z")
       ->capture_default_str()
@@ -118,18 +149,6 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
       ->group("Method");
 }
 
-void add_run_options(CLI::App& command, PictureOptions& o) {
-  command.add_option("--seed", o.seed, "Seed of the random numbers")
-      ->capture_default_str()
-      ->check(kWholeNumber);
-  command.add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
-  command.add_option("--batch", o.batch, "Paths in flight per thread; changes no result")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 20));
-  command.add_option("--simd", o.simd, "best, avx512, avx2, sse4 or one-lane")
-      ->capture_default_str();
-}
-
 }  // namespace
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
@@ -142,7 +161,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   add_volume_options(command, options.volumes);
   add_light_options(command, options);
   add_path_options(command, options);
-  add_run_options(command, options);
+  add_run_options(command, {options.seed, options.threads, options.batch, options.simd});
 }
 
 /// What to load, where a number given to --emission counts as one given to --le.
@@ -181,11 +200,8 @@ LightOptions read_lights(const PictureOptions& options) {
 }
 
 CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
-  constexpr std::array kKinds{Choice<CameraKind>{"perspective", CameraKind::kPerspective},
-                              Choice<CameraKind>{"orthographic", CameraKind::kOrthographic},
-                              Choice<CameraKind>{"spherical", CameraKind::kSpherical}};
   CameraOptions camera;
-  camera.kind = parse_choice(options.camera, "--camera", kKinds);
+  camera.kind = read_camera_kind(options);
   const PictureSize size = parse_size(options.size, "--size");
   check_memory(pixel_window(film.crop, size.width, size.height), film);
   camera.width = size.width;
@@ -193,34 +209,18 @@ CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
   camera.fov = options.fov;
   // From below one would see the ground's underside.
   if (!options.ground.empty()) camera.elevation = -kFramingElevation;
-  if (options.look_at.empty()) return camera;
-  const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
-  if (numbers.size() != 3 && numbers.size() != 6) {
-    fail(
-        "--look-at: '{}' has {}; give the camera's position and perhaps the point it looks "
-        "at: X,Y,Z or X,Y,Z,ATX,ATY,ATZ",
-        options.look_at, counted(numbers.size(), "value"));
-  }
-  camera.from = Vec3d(numbers[0], numbers[1], numbers[2]);
-  if (numbers.size() == 6) camera.at = Vec3d(numbers[3], numbers[4], numbers[5]);
+  read_places(options, camera.from, camera.at);
   return camera;
 }
 
-UpAxis read_up(const PictureOptions& options) { return parse_choice(options.up, "--up", kUpAxes); }
+UpAxis read_up(const PictureOptions& options) { return parse_up(options.up); }
+
+PeriodicSides read_sides(const PictureOptions& options) {
+  return parse_sides(options.periodic, options.domain, read_up(options));
+}
 
 std::optional<Ground> read_ground(const PictureOptions& options) {
-  if (options.ground.empty()) return std::nullopt;
-  const std::vector<double> numbers = parse_numbers(options.ground, "--ground");
-  if (numbers.size() > 4) {
-    fail("--ground: '{}' is not ALBEDO[,HEIGHT] or R,G,B[,HEIGHT]", options.ground);
-  }
-  Ground ground;
-  ground.up = read_up(options);
-  const bool is_coloured = numbers.size() > 2;
-  ground.albedo = is_coloured ? spectrum_of(numbers, 0) : Spectrum(static_cast<float>(numbers[0]));
-  if (numbers.size() % 2 == 0) ground.height = numbers.back();
-  read_option("--ground", [&] { check(ground); });
-  return ground;
+  return parse_ground(options.ground, read_up(options));
 }
 
 BuildOptions read_build_options(const CLI::App& command, const PictureOptions& options,
@@ -228,6 +228,14 @@ BuildOptions read_build_options(const CLI::App& command, const PictureOptions& o
   BuildOptions build{.invalid = read_invalid(options.volumes)};
   build.super_voxel = options.super_voxel;
   build.ground = read_ground(options);
+  build.sides = read_sides(options);
+  if (changes_camera(command)) {
+    CameraChange& camera = build.camera.emplace();
+    camera.kind = read_camera_kind(options);
+    if (command.count("--fov") > 0) camera.fov = options.fov;
+    read_places(options, camera.from, camera.at);
+    if (command.count("--up") > 0) camera.up = read_up(options);
+  }
   const bool has_environment = command.count("--environment") > 0;
   if (has_environment || command.count("--sun") > 0) {
     LightOptions lights = read_lights(options);
@@ -267,7 +275,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.batch = options.batch;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
-  walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
+  walk.absorption = parse_absorption(options.absorption);
   walk.emission = read_emission_tally(options);
   walk.simd = read_option("--simd", [&] { return parse_simd(options.simd); });
   walk.seed = options.seed;
@@ -280,9 +288,7 @@ std::string read_method(const std::string& text, std::string_view option,
 }
 
 std::string read_tracker(const std::string& text, std::string_view option) {
-  std::vector<MethodInfo> known(tracker_infos().begin(), tracker_infos().end());
-  known.push_back(kAutoInfo);
-  return read_method(text, option, known);
+  return read_method(text, option, tracker_choices());
 }
 
 std::string method_names(std::span<const MethodInfo> infos) {
@@ -302,8 +308,7 @@ bool is_scene(const PictureOptions& options) {
 
 void check_scene_options(const CLI::App& command, const PictureOptions& options) {
   constexpr const char* kOfVolumes[] = {"--grid", "--density-scale", "--albedo",
-                                        "--le",   "--negative",      "--look-at",
-                                        "--fov",  "--camera",        "--frames"};
+                                        "--le",   "--negative",      "--frames"};
   for (const char* name : kOfVolumes) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option != nullptr && option->count() > 0) {
@@ -315,8 +320,11 @@ void check_scene_options(const CLI::App& command, const PictureOptions& options)
   if (given("--turbidity") && !has_lights) {
     fail("--turbidity is that of --environment sky or of the --sun; give one of them for a scene");
   }
-  if (given("--up") && !has_lights && !given("--ground")) {
-    fail("--up is for --environment, --sun and --ground; give one of them for a scene");
+  const bool has_place = given("--ground") || given("--periodic") || changes_camera(command);
+  if (given("--up") && !has_lights && !has_place) {
+    fail(
+        "--up is for --environment, --sun, --ground, --periodic and the camera; give one of their "
+        "options for a scene");
   }
   for (const std::string& value : options.emission) {
     if (!looks_numeric(value)) continue;

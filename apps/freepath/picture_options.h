@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/freepath/domain_options.h"
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/render_volumes.h"
 #include "freepath/paths/path_scene.h"
@@ -27,7 +28,7 @@ struct PictureOptions {
   std::string environment, sun;
   int wavelengths = RenderSettings{}.wavelengths;
   double turbidity = SunParameters{}.turbidity;
-  std::string up = "y", look_at, camera = "perspective", ground;
+  std::string up = "y", look_at, camera = "perspective", ground, periodic, domain;
   double fov = CameraOptions{}.fov;
   int super_voxel = 0;
   std::string absorption = "weighted";
@@ -42,18 +43,14 @@ struct PictureOptions {
 /// Adds all of them: volumes or a scene, size, camera, lights, what paths do and what they run on.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
-/// `auto` stands for another tracker, and is in no registry.
-inline constexpr MethodInfo kAutoInfo = {
-    "auto", "chooses a tracker from the medium and says which and why",
-    "",     "as the tracker it chooses",
-    "",     {}};
-
 /// What to load, where a number given to --emission counts as one given to --le.
 std::vector<VolumePlan> read_volumes(const PictureOptions& options);
 LightOptions read_lights(const PictureOptions& options);
 /// @throws Error, too, for a picture that memory can't hold
 CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film);
 UpAxis read_up(const PictureOptions& options);
+/// Sides that --periodic and --domain make repeat.
+PeriodicSides read_sides(const PictureOptions& options);
 /// The ground that is asked for, if one is.
 std::optional<Ground> read_ground(const PictureOptions& options);
 /// Options that change or add to what the file of a scene says.

@@ -76,4 +76,15 @@ StopOnInterrupt::~StopOnInterrupt() {
 
 bool StopOnInterrupt::requested() { return interrupted; }
 
+bool PathProgress::show(uint64_t done, uint64_t total) {
+  constexpr double kSecondsBetweenReports = 0.1;
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  if (seconds - shown_ >= kSecondsBetweenReports) {
+    shown_ = seconds;
+    bar_.show({static_cast<double>(done), static_cast<double>(total), seconds});
+  }
+  return !stop_.requested();
+}
+
 }  // namespace freepath::program

@@ -1,6 +1,8 @@
 #pragma once
 /// @file A progress bar on standard error, and the wish to stop.
 
+#include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "freepath/paths/renderer.h"
@@ -36,6 +38,22 @@ class StopOnInterrupt {
   StopOnInterrupt(const StopOnInterrupt&) = delete;
   StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
   static bool requested();
+};
+
+/// Shows how many paths are done, now and then, and tells whether to go on.
+class PathProgress {
+ public:
+  explicit PathProgress(const StopOnInterrupt& stop) : stop_(stop) {}
+  /// @return false if the end is wished
+  bool show(uint64_t done, uint64_t total);
+  /// Clears the line.
+  void finish() const { bar_.finish(); }
+
+ private:
+  const StopOnInterrupt& stop_;
+  ProgressBar bar_{1, 0};
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double shown_ = 0;
 };
 
 }  // namespace freepath::program

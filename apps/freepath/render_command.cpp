@@ -46,11 +46,13 @@ frame. Ctrl-C writes the frame under way and ends the sequence.
 A density of 1 has an extinction of 1 per world unit, times --density-scale.
 Methods take options after their name: weighted-decomposition:control=0.5
 
-A scene of pbrt-v4 (.pbrt) says itself what is rendered; -o, --size, --spp, --seed and the methods
-take the place of what it says. Its parameters are listed in docs/scenes.md.
+A scene of pbrt-v4 (.pbrt) says itself what is rendered; -o, --size, --spp, --seed, --camera,
+--look-at, --fov and the methods take the place of what it says. Its parameters are listed in
+docs/scenes.md.
 
 Examples:
   freepath render cloud.vdb -o cloud.exr -o cloud.png
+  freepath render room.pbrt -o around.exr --camera spherical --look-at 0,2,1
   freepath render cloud.vdb -o cloud.png --spp 256 --size 960x540 --albedo 0.999 --g 0.8
   freepath render smoke.vdb -o smoke.exr --environment sky.hdr --sun none --time 60
   freepath render haze.nvdb -o haze.exr --sigma-s 4,1,0.25 --sigma-a 0.02,0.2,1 --sun 20,120
@@ -150,8 +152,12 @@ void run(const CLI::App& command, const RenderOptions& options) {
       .surroundings = make_surroundings(read_lights(options.picture), up, &warnings),
       .color = read_color(options.picture, ColorMode::kRgb),
       .super_voxel = options.picture.super_voxel,
+      .sides = read_sides(options.picture),
       .look = read_look(options, ViewTransform::kNeutral)};
   for (const std::string& warning : warnings) warn("{}", warning);
+  if (!options.frames.empty() && !options.picture.periodic.empty() && !plan.sides.extents) {
+    fail("--periodic with --frames needs a --domain: that of the voxels may change with them");
+  }
   if (options.frames.empty()) {
     render_picture(plan, pictures.front());
   } else {

@@ -33,7 +33,7 @@ VolumeMedium load_medium(const RenderPlan& plan, const PictureFiles& files, Rend
   Stopwatch watch;
   std::vector<Volume> volumes = load_volumes(volume_plans, report.volumes);
   report.seconds_load = watch.lap();
-  VolumeMedium medium = make_medium(std::move(volumes), plan.super_voxel);
+  VolumeMedium medium = make_medium(std::move(volumes), plan.super_voxel, plan.sides);
   report.seconds_build = watch.lap();
   return medium;
 }
@@ -65,17 +65,15 @@ Stage frame_sequence(const RenderPlan& plan, std::span<const PictureFiles> frame
 
 /// The tracker to walk with, after saying what users must know of it.
 /// @param last the one of the frame before, of which there is nothing new to say
-std::string settle_tracker(const std::string& tracker, const Medium& medium,
-                           const std::string& last = {}) {
-  if (tracker == kAutoTracker) {
-    const TrackerChoice choice = choose_tracker(medium);
-    if (choice.tracker != last) {
-      tell("auto: {}, since {}\n", choice.tracker, choice.reason);
-    }
-    return choice.tracker;
+std::string settled_tracker(const std::string& tracker, const Medium& medium,
+                            const std::string& last = {}) {
+  const TrackerChoice choice = settle_tracker(tracker, medium);
+  if (choice.reason.empty()) {
+    if (last.empty()) warn_if_biased(tracker);
+  } else if (choice.tracker != last) {
+    tell("auto: {}, since {}\n", choice.tracker, choice.reason);
   }
-  if (last.empty()) warn_if_biased(tracker);
-  return tracker;
+  return choice.tracker;
 }
 
 /// Renders until it is done or the stop is wished, and writes what there is.
@@ -149,7 +147,7 @@ void render_picture(const RenderPlan& plan, const PictureFiles& files) {
   const VolumeMedium medium = load_medium(plan, files, report);
   Stopwatch watch;
   const Stage stage = make_stage(plan, *medium.medium);
-  const std::string tracker = settle_tracker(plan.settings.walk.tracker, *medium.medium);
+  const std::string tracker = settled_tracker(plan.settings.walk.tracker, *medium.medium);
   report.seconds_build += watch.lap();
   const StopOnInterrupt stop;
   const RenderResult result = render_and_write(plan, files, medium, stage, tracker, stop, report);
@@ -168,7 +166,7 @@ void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& fram
       const VolumeMedium medium = load_medium(plan, files, report);
       Stopwatch watch;
       if (!stage) stage = frame_sequence(plan, std::span(frames).subspan(i), *medium.medium);
-      tracker = settle_tracker(plan.settings.walk.tracker, *medium.medium, tracker);
+      tracker = settled_tracker(plan.settings.walk.tracker, *medium.medium, tracker);
       report.seconds_build += watch.lap();
       if (stop.requested()) {
         if (i > 0) break;

@@ -23,6 +23,7 @@ struct RenderPlan {
   Surroundings surroundings;
   ColorMode color = ColorMode::kRgb;
   int super_voxel = 0;
+  PeriodicSides sides;
   PictureLook look;
 };
 

@@ -42,7 +42,7 @@ RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
   WalkSettings& walk = settings.walk;
   walk.seed = plan.seed.value_or(picture.seed);
   walk.tracker = plan.tracker.value_or(picture.tracker);
-  if (walk.tracker.empty() || walk.tracker == kAutoTracker) {
+  if (walk.tracker.empty() || is_automatic(walk.tracker)) {
     walk.tracker = standard_tracker(built.scene);
   }
   walk.tracker = to_string(parse_method(walk.tracker, tracker_infos()), tracker_infos());

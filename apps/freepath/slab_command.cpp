@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -14,6 +13,7 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "apps/freepath/estimates.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/counted.h"
@@ -171,8 +171,6 @@ std::vector<SlabLayer> read_layers(const SlabOptions& options) {
 }
 
 SlabSettings read_settings(const SlabOptions& options) {
-  constexpr std::array kAbsorptions{Choice<Absorption>{"analog", Absorption::kAnalog},
-                                    Choice<Absorption>{"weighted", Absorption::kWeighted}};
   SlabSettings settings;
   settings.mu0 = options.mu0;
   settings.diffuse = options.diffuse;
@@ -182,30 +180,23 @@ SlabSettings read_settings(const SlabOptions& options) {
   settings.super_voxel = options.super_voxel;
   settings.bound_scale = static_cast<float>(options.bound_scale);
   settings.walk.tracker = options.tracker;
-  settings.walk.absorption = parse_choice(options.absorption, "--absorption", kAbsorptions);
+  settings.walk.absorption = parse_absorption(options.absorption);
   settings.walk.simd = parse_simd(options.simd);
   settings.walk.seed = options.seed;
   return settings;
 }
 
 /// Absorptance: the light that is neither reflected nor transmitted.
-SlabEstimate absorptance_of(const SlabResult& result) {
+Estimate absorptance_of(const SlabResult& result) {
   return {1 - result.total.mean, result.total.error, {}};
 }
 
 void print_json(const SlabResult& result, const SlabSettings& settings) {
   nlohmann::ordered_json json;
-  const auto put = [&](const std::string& name, const SlabEstimate& estimate) {
-    json[name] = estimate.mean;
-    json[name + "_error"] = estimate.error;
-    if (!estimate.upper) return;
-    json[name + "_error"] = nullptr;  // there is none
-    json[name + "_upper"] = *estimate.upper;
-  };
-  put("reflectance", result.reflectance);
-  put("transmittance", result.transmittance);
-  put("unscattered", result.unscattered);
-  put("absorptance", absorptance_of(result));
+  put_estimate(json, "reflectance", result.reflectance);
+  put_estimate(json, "transmittance", result.transmittance);
+  put_estimate(json, "unscattered", result.unscattered);
+  put_estimate(json, "absorptance", absorptance_of(result));
   json["paths"] = result.paths;
   json["tracker"] = result.tracker;
   json["seed"] = settings.walk.seed;
@@ -213,21 +204,10 @@ void print_json(const SlabResult& result, const SlabSettings& settings) {
 }
 
 void print_table(const SlabResult& result) {
-  const auto row = [&](const char* name, const SlabEstimate& estimate) {
-    constexpr double kFixed = 1e-3;  // below, six decimals say too little
-    if (estimate.upper) {
-      print("{:<15}  < {:.2g}  (95 %; none of {})\n", name, *estimate.upper,
-            counted(result.paths, "path"));
-    } else if (estimate.mean != 0 && std::abs(estimate.mean) < kFixed) {
-      print("{:<15}{:>10.4e}  +- {:.1e}\n", name, estimate.mean, estimate.error);
-    } else {
-      print("{:<15}{:>10.6f}  +- {:.6f}\n", name, estimate.mean, estimate.error);
-    }
-  };
-  row("reflectance", result.reflectance);
-  row("transmittance", result.transmittance);
-  row("  unscattered", result.unscattered);
-  row("absorptance", absorptance_of(result));
+  print_estimate("reflectance", result.reflectance, result.paths);
+  print_estimate("transmittance", result.transmittance, result.paths);
+  print_estimate("  unscattered", result.unscattered, result.paths);
+  print_estimate("absorptance", absorptance_of(result), result.paths);
   print("{}, tracker {}\n", counted(result.paths, "path"), result.tracker);
   if (!result.tracker_reason.empty()) {
     print("auto: {}, since {}\n", result.tracker, result.tracker_reason);
@@ -237,21 +217,11 @@ void print_table(const SlabResult& result) {
 void run(const SlabOptions& options) {
   const std::vector<SlabLayer> layers = read_layers(options);
   const SlabSettings settings = read_settings(options);
-  const ProgressBar bar(1, 0);
   const StopOnInterrupt stop;
-  const auto start = std::chrono::steady_clock::now();
-  double shown = 0;
-  const SlabResult result = trace_slab(layers, settings, [&](uint64_t done, uint64_t total) {
-    constexpr double kSecondsBetweenReports = 0.1;
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (seconds - shown >= kSecondsBetweenReports) {
-      shown = seconds;
-      bar.show({static_cast<double>(done), static_cast<double>(total), seconds});
-    }
-    return !stop.requested();
-  });
-  bar.finish();
+  PathProgress progress(stop);
+  const SlabResult result = trace_slab(
+      layers, settings, [&](uint64_t done, uint64_t total) { return progress.show(done, total); });
+  progress.finish();
   warn_if_biased(result.tracker);
   if (options.json) {
     print_json(result, settings);
@@ -300,25 +270,11 @@ void add_method_options(CLI::App& command, SlabOptions& o) {
                   "Looser bounds: under tight ones, 1, every collision in a layer is real")
       ->capture_default_str()
       ->check(kFiniteNumber);
-  command.add_option("--simd", o.simd, "best, avx512, avx2, sse4 or one-lane")
-      ->capture_default_str();
 }
 
-void add_run_options(CLI::App& command, SlabOptions& o) {
+void add_result_options(CLI::App& command, SlabOptions& o) {
   command.add_option("--paths", o.paths, "Paths to trace")->capture_default_str();
-  command.add_option("--seed", o.seed, "Seed of the random numbers")
-      ->capture_default_str()
-      ->check(  // CLI11 would wrap a negative number around
-          [](const std::string& text) {
-            return text.find('-') == std::string::npos
-                       ? ""
-                       : fmt::format("'{}' is negative; a seed is a whole number from 0 on", text);
-          },
-          "");
-  command.add_option("--threads", o.threads, "Threads [all]")->check(CLI::Range(1, 1024));
-  command.add_option("--batch", o.batch, "Paths in flight per thread; changes no result")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1 << 20));
+  add_run_options(command, {o.seed, o.threads, o.batch, o.simd});
   command.add_flag("--json", o.json, "Print one JSON object instead of a table");
 }
 
@@ -330,7 +286,7 @@ void add_slab_command(CLI::App& program) {
   const auto options = std::make_shared<SlabOptions>();
   add_layer_options(*command, *options);
   add_method_options(*command, *options);
-  add_run_options(*command, *options);
+  add_result_options(*command, *options);
   command->footer(kSlabFooter);
   command->callback([options] { run(*options); });
 }

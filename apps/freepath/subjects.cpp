@@ -81,9 +81,12 @@ LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions&
   read_up(options);
   read_camera(options, FilmPlan());
   read_lights(options);
+  read_sides(options);
   std::vector<VolumeReport> report;
-  LoadedSubject loaded = subject_of_medium(
-      options, make_medium(load_volumes(read_volumes(options), report), options.super_voxel), size);
+  LoadedSubject loaded = subject_of_medium(options,
+                                           make_medium(load_volumes(read_volumes(options), report),
+                                                       options.super_voxel, read_sides(options)),
+                                           size);
   std::vector<std::filesystem::path> files = files_of_options(options);
   files.insert(files.begin(), options.volumes.files.begin(), options.volumes.files.end());
   loaded.subject.digest = digest_of(command, files);
@@ -156,7 +159,7 @@ LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volu
   loaded.settings = read_run_settings(options);
   loaded.film = size;
   const Medium& medium = *volumes.medium;
-  const TrackerChoice choice = choose_tracker(medium);
+  const TrackerChoice choice = settle_tracker("auto", medium);
   loaded.automatic_tracker = choice.tracker;
   loaded.reason = choice.reason;
   Subject& subject = loaded.subject;

@@ -52,7 +52,7 @@ void print_methods(const char* title, const std::vector<MethodInfo>& infos) {
     if (const std::string paths = weights_in_paths(info); !paths.empty()) {
       print("      paths:     {}\n", paths);
     }
-    if (info.name != kAutoInfo.name) print("      channels:  {}\n", channels_of(info));
+    if (!is_automatic(info.name)) print("      channels:  {}\n", channels_of(info));
     if (!info.source.empty()) print("      source:    {}\n", info.source);
     for (const MethodOption& option : info.options) {
       print("      {}={}  [{}]\n          {}\n", option.name, values_of(option),
@@ -92,8 +92,7 @@ nlohmann::json to_json(const std::vector<MethodInfo>& infos) {
 }
 
 void run(bool json) {
-  std::vector<MethodInfo> trackers(tracker_infos().begin(), tracker_infos().end());
-  trackers.push_back(kAutoInfo);
+  const std::vector<MethodInfo> trackers(tracker_choices().begin(), tracker_choices().end());
   const std::vector<MethodInfo> estimators(transmittance_infos().begin(),
                                            transmittance_infos().end());
   if (json) {

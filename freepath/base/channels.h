@@ -53,15 +53,16 @@ inline bool is_finite(const Channels& c) {
   for (int i = 0; i < kMaxChannels; ++i) product += 0 * c[i];
   return product == 0;
 }
-/// Largest magnitude of all channels; NaN if a channel is.
+/// Largest magnitude of all channels; NaN if a channel is infinite or NaN.
 inline float largest_magnitude(const Channels& c) {
   float largest = 0;
+  float nothing = 0;  // or NaN
   for (int i = 0; i < kMaxChannels; ++i) {
     const float magnitude = std::abs(c[i]);
-    largest = largest < magnitude || std::isnan(magnitude) ? magnitude : largest;
-    if (std::isnan(largest)) return largest;
+    largest = std::max(largest, magnitude);
+    nothing += magnitude - magnitude;
   }
-  return largest;
+  return largest + nothing;
 }
 
 }  // namespace freepath

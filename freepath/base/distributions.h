@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "freepath/base/random.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -38,8 +39,8 @@ inline constexpr float kUniformSpherePdf = 0.25F * std::numbers::inv_pi_v<float>
 /// A uniformly distributed unit vector.
 inline Vec3f sample_sphere(float u0, float u1) {
   const float sine = 2.0F * std::sqrt(u0 * (1.0F - u0));
-  const float azimuth = 2.0F * std::numbers::pi_v<float> * u1;
-  return {sine * std::cos(azimuth), 1.0F - 2.0F * u0, sine * std::sin(azimuth)};
+  const SinCos azimuth = sincos_of_turn(u1);
+  return {sine * azimuth.cosine, 1.0F - 2.0F * u0, sine * azimuth.sine};
 }
 
 /// One column of an alias table (the method of Walker, 1977, built as by Vose, 1991): itself with

@@ -100,11 +100,14 @@ constexpr float exponential_from_words(uint32_t bits, uint32_t second) {
 /// A sequence of random numbers for one (seed, pixel, sample, stream).
 class RandomStream {
  public:
-  constexpr RandomStream(uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t stream)
+  /// @param first_block of four words, if others are drawn elsewhere
+  constexpr RandomStream(uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t stream,
+                         uint32_t first_block = 0)
       : key_{static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)},
         pixel_(pixel),
         sample_(sample),
-        stream_(stream) {}
+        stream_(stream),
+        block_(first_block) {}
 
   constexpr uint32_t bits() {
     if (used_ == 4) {
@@ -135,7 +138,7 @@ class RandomStream {
   std::array<uint32_t, 2> key_;
   std::array<uint32_t, 4> words_{};
   uint32_t pixel_, sample_, stream_;
-  uint32_t block_ = 0;
+  uint32_t block_;
   uint32_t used_ = 4;
 };
 

@@ -1,55 +1,19 @@
 #pragma once
 /// @file The surfaces of a scene, to be met by rays.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "freepath/base/vector.h"
+#include "freepath/geometry/boundary_crossings.h"
+#include "freepath/geometry/ray_place.h"
 #include "freepath/geometry/shape_geometry.h"
 #include "freepath/geometry/surface_point.h"
 
 namespace freepath {
-
-/// SurfaceHit::instance of shapes that are in no group.
-inline constexpr uint32_t kNoInstance = 0xFFFFFFFF;
-
-/// Which intersection of a ray with all surfaces: the same for the same ray, whatever else there
-/// is.
-struct SurfaceKey {
-  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
-  uint32_t geometry = 0;            ///< Of what traces the shapes.
-  uint32_t primitive = 0;           ///< Of the geometry.
-  uint32_t root = 0;                ///< Which of the points where a line meets the primitive.
-
-  friend bool operator==(const SurfaceKey&, const SurfaceKey&) = default;
-  friend bool operator<(const SurfaceKey& a, const SurfaceKey& b) {
-    return std::tie(a.instance, a.geometry, a.primitive, a.root) <
-           std::tie(b.instance, b.geometry, b.primitive, b.root);
-  }
-};
-
-/// A place on a ray where a surface is met, in double precision.
-struct RayPlace {
-  double t = 0;  ///< position = origin + t direction
-  /// Surfaces no farther than this along the ray are at the same place [t]: a new ray from here may
-  /// start on either side of them, since positions in floats tell them apart no better.
-  double reach = 0;
-  SurfaceKey key;
-
-  /// In the order in which a ray meets them, which is strict.
-  bool is_before(const RayPlace& other) const {
-    return t < other.t || (t == other.t && key < other.key);
-  }
-  bool is_tied(const RayPlace& other) const {
-    const double gap = t < other.t ? other.t - t : t - other.t;
-    return gap <= reach || gap <= other.reach;
-  }
-};
 
 /// Where a ray meets a surface.
 struct SurfaceHit {
@@ -59,38 +23,6 @@ struct SurfaceHit {
   uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
   RayPlace place;
   bool is_tied = false;  ///< Another surface is at the same place; see Surfaces::find_ties.
-};
-
-/// Where a ray goes through a shape that is a mere boundary.
-struct BoundaryCrossing {
-  RayPlace place;
-  uint32_t shape = 0;
-  bool enters = false;  ///< direction · normal < 0
-
-  bool is_same(const BoundaryCrossing& other) const {
-    return shape == other.shape && enters == other.enters &&
-           place.key.instance == other.place.key.instance && place.is_tied(other.place);
-  }
-};
-
-/// The nearest crossings of a ray in the order of their places, each once even where the ray goes
-/// through the common edge of two triangles.
-class BoundaryCrossings {
- public:
-  static constexpr uint32_t kCapacity = 32;
-
-  std::span<const BoundaryCrossing> all() const { return {crossings_.data(), count_}; }
-  bool empty() const { return count_ == 0; }
-  /// There are more, all of them beyond the last of these.
-  bool overflowed() const { return overflowed_; }
-
-  void clear();
-  void add(const BoundaryCrossing& crossing);
-
- private:
-  std::array<BoundaryCrossing, kCapacity> crossings_;
-  uint32_t count_ = 0;
-  bool overflowed_ = false;
 };
 
 /// A surface at the place of another.

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "freepath/base/error.h"
+#include "freepath/base/memory_budget.h"
 #include "freepath/base/printable.h"
 
 namespace freepath::io {
@@ -41,18 +43,34 @@ int32_t number_at(std::span<const std::byte> bytes, std::size_t at) {
   return value;
 }
 
-/// A list of channels: a name that ends in 0 and 16 bytes for each, and an empty name.
-bool is_channel_list(std::span<const std::byte> value) {
+/// Bytes of a pixel in a list of channels, of which each has a name that ends in 0 and 16 bytes:
+/// its type, and behind four bytes in how many columns and rows it has one value. Behind the last
+/// there is an empty name. Nothing if it is no such list.
+std::optional<double> pixel_bytes(std::span<const std::byte> value) {
   constexpr std::size_t kBehindName = 16;
+  constexpr int32_t kHalf = 1;
+  double bytes = 0;
   for (std::size_t at = 0; at < value.size();) {
     const auto* const begin = value.data() + at;
     const void* const end = std::memchr(begin, 0, value.size() - at);
-    if (end == nullptr) return false;
+    if (end == nullptr) return std::nullopt;
     const auto length = static_cast<std::size_t>(static_cast<const std::byte*>(end) - begin);
-    if (length == 0) return at + 1 == value.size();
-    at += length + 1 + kBehindName;
+    if (length == 0) return at + 1 == value.size() ? std::optional(bytes) : std::nullopt;
+    at += length + 1;
+    if (at + kBehindName > value.size()) return std::nullopt;
+    const double columns = std::max(1, number_at(value, at + 8));
+    const double rows = std::max(1, number_at(value, at + 12));
+    bytes += (number_at(value, at) == kHalf ? 2 : 4) / (columns * rows);
+    at += kBehindName;
   }
-  return false;
+  return std::nullopt;
+}
+
+/// Rows that are packed together, by the number of a compression.
+int rows_together(std::byte compression) {
+  constexpr std::array kRows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  const auto number = std::to_integer<std::size_t>(compression);
+  return number < kRows.size() ? kRows[number] : 1;
 }
 
 /// Texts, each behind its length.
@@ -79,7 +97,7 @@ bool is_preview(std::span<const std::byte> value) {
 
 /// Whether a value of this type can have this size and these bytes.
 bool is_value(std::string_view type, std::span<const std::byte> value) {
-  if (type == "chlist") return is_channel_list(value);
+  if (type == "chlist") return pixel_bytes(value).has_value();
   if (type == "stringvector") return is_text_list(value);
   if (type == "preview") return is_preview(value);
   if (type == "floatvector") return value.size() % sizeof(float) == 0;
@@ -97,8 +115,11 @@ class HeaderWalk {
     uint32_t version = 0;
     if (!take(kMagic.size(), version)) return;
     constexpr uint32_t kSeveralParts = 0x1000;
+    constexpr uint32_t kDeep = 0x800;
     do {
+      part_ = {};
       if (!walk_header()) return;
+      if ((version & kDeep) == 0) check_size();  // of deep ones pixels have no size
     } while ((version & kSeveralParts) != 0 && !is_at_end_of_headers());
   }
 
@@ -126,8 +147,43 @@ class HeaderWalk {
             "or write it anew",
             file_.name(), printable(name), printable(type), size);
       }
+      note(name, value);
       at_ += value.size();
     }
+  }
+
+  /// Keeps what tells how large the part is.
+  void note(const std::string& name, std::span<const std::byte> value) {
+    const auto number = [&](std::size_t i) { return double{1} * number_at(value, 4 * i); };
+    if (name == "dataWindow" && value.size() == 16) {
+      part_.width = number(2) - number(0) + 1;
+      part_.height = number(3) - number(1) + 1;
+    } else if (name == "channels") {
+      part_.pixel = pixel_bytes(value).value_or(0);
+    } else if (name == "compression" && value.size() == 1) {
+      part_.rows = rows_together(value[0]);
+    } else if (name == "tiles" && value.size() == 9) {
+      const auto unsigned_number = [&](std::size_t i) {
+        return double{1} * static_cast<uint32_t>(number_at(value, 4 * i));
+      };
+      part_.tile = unsigned_number(0) * unsigned_number(1);
+    }
+  }
+
+  /// OpenEXR takes memory for all that is packed together as it opens a file.
+  void check_size() const {
+    if (!(part_.width >= 1 && part_.height >= 1)) return;  // OpenEXR's to tell
+    const double bytes = part_.width * part_.height * part_.pixel;
+    check_declared(file_.name(), fmt::format("{:.0f}x{:.0f} pixels", part_.width, part_.height),
+                   bytes, file_.size());
+    const double together = (part_.tile != 0 ? part_.tile : part_.rows * part_.width) * part_.pixel;
+    constexpr double kMuch = 0x1p27;
+    constexpr double kDeflate = 1032;  // to 1, at best
+    if (together <= std::max(kMuch, kDeflate * static_cast<double>(file_.size()))) return;
+    fail(
+        "{}: its pixels are packed in parts that take {:.0f} MB each, out of {} bytes; the file is "
+        "damaged, or has to be written with smaller tiles or a compression of single rows (zips)",
+        file_.name(), together / 1e6, file_.size());
   }
 
   /// Of several parts: an empty header.
@@ -163,6 +219,11 @@ class HeaderWalk {
 
   const InputFile& file_;
   uint64_t at_ = 0;
+  /// Size of the part that a header tells of [pixels, bytes].
+  struct {
+    double width = 0, height = 0, pixel = 0, tile = 0;
+    int rows = 1;
+  } part_;
 };
 
 }  // namespace

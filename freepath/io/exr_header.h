@@ -6,8 +6,9 @@
 namespace freepath::io {
 
 /// Checks that every attribute in the headers of an EXR file has its type's size and can be in the
-/// file. OpenEXR trusts sizes of up to 2 GB and takes memory for them. Files of other formats pass.
-/// @throws Error that names the file and the attribute
+/// file, and that so many pixels, and what is packed together of them, can come out of it. OpenEXR
+/// trusts all of that and takes memory for it as it opens the file. Files of other formats pass.
+/// @throws Error that names the file and the attribute or size
 void check_exr_header(const InputFile& file);
 
 }  // namespace freepath::io

@@ -24,7 +24,7 @@ void* open_library() {
       program.parent_path() / FREEPATH_LIBRARY_FOLDER / FREEPATH_IMAGE_LIBRARY;
   if (void* const library = dlopen(beside.c_str(), RTLD_LAZY | RTLD_LOCAL)) return library;
   fail(
-      "can't load the library that reads and writes images: {}. It is installed together with "
+      "can't load the library that reads images: {}. It is installed together with "
       "freepath; if it was moved, name its folder in LD_LIBRARY_PATH",
       std::filesystem::exists(beside, ignored) ? dlerror() : reason);
 }

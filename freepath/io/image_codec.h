@@ -1,7 +1,7 @@
 #pragma once
-/// @file Image formats, by OpenImageIO, in a library of their own: it brings 250 others, which take
-/// longer to load than most runs of the program take, and is loaded when the first image is read or
-/// written.
+/// @file Image formats to read, by OpenImageIO, in a library of their own: it brings 250 others,
+/// which take longer to load than most runs of the program take, and is loaded when the first image
+/// is read.
 
 #include <cstdint>
 #include <string>
@@ -11,8 +11,7 @@
 
 namespace freepath {
 
-/// What the library of image formats does. Each call returns the reason why it could not; empty: it
-/// is done.
+/// Functions of the library of image formats.
 struct ImageCodec {
   /// The version of freepath that it was built with.
   const char* version;
@@ -20,16 +19,9 @@ struct ImageCodec {
   /// @param stored size of the file [bytes]
   /// @param srgb set where the values are of the sRGB transfer function
   /// @param alpha number of the channel that holds no colour; -1: none
+  /// @return the reason why it could not; empty: it is done
   std::string (*read)(const std::string& path, uint64_t stored, Image& image, bool& srgb,
                       int& alpha);
-  /// Writes an EXR file.
-  /// @param values those to store instead of the image's own
-  std::string (*write_exr)(const std::string& path, const Image& image, const float* values,
-                           ExrPrecision precision);
-  /// The bytes of a PNG file of sRGB pixels.
-  /// @param rgb 3 · width · height values
-  std::string (*encode_png)(int width, int height, const uint8_t* rgb,
-                            std::vector<uint8_t>& encoded);
 };
 
 /// The function that the library exports, ImageCodecFunction.

@@ -14,6 +14,7 @@
 #include "freepath/io/image.h"
 #include "freepath/io/image_aside.h"
 #include "freepath/io/image_codec.h"
+#include "freepath/io/image_encode.h"
 #include "freepath/io/image_plain.h"
 
 namespace freepath {
@@ -67,7 +68,6 @@ ImageFormat image_format(const std::string& path) {
 void check_writable(const std::string& path) {
   if (!is_plain_image(path)) image_format(path);
   check_file_place(path);
-  image_codec();
 }
 
 void write_exr(const std::string& path, const Image& image, ExrPrecision precision) {
@@ -86,8 +86,8 @@ void write_exr(AsideFile& file, const Image& image, ExrPrecision precision) {
     clamped = image.values;
     for (float& value : clamped) value = std::clamp(value, -kLargestHalf, kLargestHalf);
   }
-  const std::string reason = image_codec().write_exr(
-      file.name(), image, half ? clamped.data() : image.values.data(), precision);
+  const std::string reason =
+      write_exr_values(file.name(), image, half ? clamped.data() : image.values.data(), precision);
   if (!reason.empty()) file.give_up(reason);
   file.replace_target();
 }
@@ -97,8 +97,7 @@ std::vector<uint8_t> encode_png(const Image& image, const PictureLook& look,
   check_consistent(name, image);
   const std::vector<uint8_t> bytes = srgb_pixels(image, look, name);
   std::vector<uint8_t> encoded;
-  const std::string reason =
-      image_codec().encode_png(image.width, image.height, bytes.data(), encoded);
+  const std::string reason = encode_png_pixels(image.width, image.height, bytes.data(), encoded);
   if (!reason.empty()) fail("{}: can't encode the picture: {}", name, reason);
   return encoded;
 }

@@ -5,7 +5,6 @@
 
 #include "freepath/io/image_codec.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -49,24 +48,6 @@ std::vector<std::pair<std::string, MetadataValue>> metadata_of(const OIIO::Image
   return metadata;
 }
 
-void set_metadata(OIIO::ImageSpec& spec, const Image& image) {
-  for (const auto& [name, value] : image.metadata) {
-    if (const auto* text = std::get_if<std::string>(&value)) {
-      spec.attribute(name, *text);
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), real);
-    } else {
-      const int64_t integer = std::get<int64_t>(value);
-      if (integer >= std::numeric_limits<int>::min() &&
-          integer <= std::numeric_limits<int>::max()) {
-        spec.attribute(name, static_cast<int>(integer));
-      } else {
-        spec.attribute(name, std::to_string(integer));
-      }
-    }
-  }
-}
-
 /// Keeps the libraries of formats from starting threads where the system grants none: they would
 /// fail for it.
 void settle_threads() {
@@ -76,28 +57,19 @@ void settle_threads() {
   OIIO::attribute("exr_threads", -1);
 }
 
-/// Writes with OpenImageIO: into the file of that name, or into a buffer if there is one.
-/// @return the reason why it could not; empty: it is written
-std::string encode(const std::string& name, const char* format, const OIIO::ImageSpec& spec,
-                   const OIIO::TypeDesc& type, const void* pixels,
-                   OIIO::Filesystem::IOProxy* buffer = nullptr) {
-  settle_threads();
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-  if (!output) return trimmed(OIIO::geterror());
-  if (buffer != nullptr && !output->set_ioproxy(buffer)) return trimmed(output->geterror());
-  if (!output->open(name, spec)) return trimmed(output->geterror());
-  const bool written = output->write_image(type, pixels);
-  const std::string reason = output->geterror();
-  if (output->close() && written) return {};
-  return trimmed(written ? output->geterror() : reason);
-}
-
 /// Why an image can't be what its header says; empty if it can.
 std::string reason_against_size(const OIIO::ImageSpec& spec, uint64_t stored) {
   const double values = static_cast<double>(spec.nchannels) * spec.width * spec.height;
   const int bits =
       spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
   const std::string what = fmt::format("{}x{} pixels", spec.width, spec.height);
+  // Whoever reads a tile takes memory for the whole of it.
+  constexpr double kLargeTile = 0x1p24;  // pixels
+  const double tile = double{1} * spec.tile_width * spec.tile_height;
+  if (tile > kLargeTile && tile > double{1} * spec.width * spec.height) {
+    return fmt::format("its tiles of {}x{} pixels are larger than it is", spec.tile_width,
+                       spec.tile_height);
+  }
   try {
     check_declared("", what, values * bits / 8, stored);
     check_memory_present("", what, values * sizeof(float));
@@ -105,6 +77,23 @@ std::string reason_against_size(const OIIO::ImageSpec& spec, uint64_t stored) {
     return std::string(error.what()).substr(2);  // behind the name, which the caller says
   }
   return {};
+}
+
+/// Reads rows [begin, end).
+bool read_scanlines(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, int begin, int end,
+                    float* target) {
+  // To read many rows OpenImageIO takes memory for some 256 of them, as stored, however few there
+  // are: a row of a million pixels would take gigabytes.
+  constexpr std::size_t kWideRow = std::size_t{1} << 16;  // values
+  const std::size_t row = static_cast<std::size_t>(spec.width) * spec.nchannels;
+  if (row < kWideRow) {
+    return input.read_scanlines(0, 0, spec.y + begin, spec.y + end, spec.z, 0, spec.nchannels,
+                                OIIO::TypeFloat, target);
+  }
+  for (int y = begin; y < end; ++y, target += row) {
+    if (!input.read_scanline(spec.y + y, spec.z, OIIO::TypeFloat, target)) return false;
+  }
+  return true;
 }
 
 /// Reads rows in chunks, so that a header alone takes no memory.
@@ -125,8 +114,7 @@ bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, std::vector
         spec.tile_width > 0
             ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + y, spec.y + end, spec.z,
                                spec.z + 1, 0, spec.nchannels, OIIO::TypeFloat, target)
-            : input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, spec.nchannels,
-                                   OIIO::TypeFloat, target);
+            : read_scanlines(input, spec, y, end, target);
     if (!read) return false;
   }
   return true;
@@ -146,18 +134,6 @@ std::optional<RgbChromaticities> chromaticities_of(const OIIO::ImageSpec& spec) 
   const bool valid = std::abs(area) > 1e-4 && given.white.y > 1e-3;
   if (!valid || are_same(given, RgbChromaticities())) return {};
   return given;
-}
-
-void set_chromaticities(OIIO::ImageSpec& spec, const Image& image) {
-  if (!image.chromaticities) return;
-  std::array<float, 8> v{};
-  std::size_t i = 0;
-  const auto& [primaries, white] = *image.chromaticities;
-  for (const Chromaticity& c : {primaries.red, primaries.green, primaries.blue, white}) {
-    v[i++] = static_cast<float>(c.x);
-    v[i++] = static_cast<float>(c.y);
-  }
-  spec.attribute(kChromaticities, kEightFloats, v.data());
 }
 
 std::string read_stored(const std::string& path, uint64_t stored, Image& image, bool& srgb,
@@ -191,33 +167,10 @@ std::string read_stored(const std::string& path, uint64_t stored, Image& image, 
   return {};
 }
 
-std::string write_values(const std::string& path, const Image& image, const float* values,
-                         ExrPrecision precision) {
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()),
-                       precision == ExrPrecision::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat);
-  spec.channelnames = image.channels;
-  spec.x = image.x;
-  spec.y = image.y;
-  if (image.full_width > 0) spec.full_width = image.full_width;
-  if (image.full_height > 0) spec.full_height = image.full_height;
-  spec.attribute("compression", "zip");
-  set_metadata(spec, image);
-  set_chromaticities(spec, image);
-  return encode(path, "openexr", spec, OIIO::TypeFloat, values);
-}
-
-std::string encode_rgb(int width, int height, const uint8_t* rgb, std::vector<uint8_t>& encoded) {
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeUInt8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  OIIO::Filesystem::IOVecOutput buffer(encoded);
-  return encode("picture.png", "png", spec, OIIO::TypeUInt8, rgb, &buffer);
-}
-
 }  // namespace
 }  // namespace freepath
 
 extern "C" const freepath::ImageCodec* freepath_image_codec() {
-  static const freepath::ImageCodec kCodec{freepath::version(), freepath::read_stored,
-                                           freepath::write_values, freepath::encode_rgb};
+  static const freepath::ImageCodec kCodec{freepath::version(), freepath::read_stored};
   return &kCodec;
 }

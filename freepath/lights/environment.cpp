@@ -18,7 +18,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::str
     : width_(image.width), height_(image.height), up_(up) {
   if (width_ < 1 || height_ < 1) fail("{}: the environment image is empty", name);
   const std::array<int, 3> colour = colour_channels(image, name);
-  radiance_.reserve(image.pixel_count());
+  texels_.reserve(image.pixel_count());
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {
       const float* values = image.pixel(column, row);
@@ -27,7 +27,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::str
         fail("{}: pixel ({}, {}) is {},{},{}; light must be finite and not negative", name, column,
              row, s.x, s.y, s.z);
       }
-      radiance_.push_back(s);
+      texels_.push_back({{s.x, s.y, s.z, 0}});
     }
   }
   std::vector<double> heights(height_ + 1);
@@ -74,8 +74,9 @@ void ImageEnvironment::build_tables(const std::vector<double>& importance,
   }
   rows_ = make_alias_table(row_power);
   const double power = std::accumulate(row_power.begin(), row_power.end(), 0.0);
-  pdf_.reserve(importance.size());
-  for (const double value : importance) pdf_.push_back(static_cast<float>(value / power));
+  for (std::size_t i = 0; i < importance.size(); ++i) {
+    texels_[i][kPdf] = static_cast<float>(importance[i] / power);
+  }
 }
 
 Spectrum ImageEnvironment::mean_over_texel(int column, int row) const {
@@ -87,7 +88,8 @@ Spectrum ImageEnvironment::mean_over_texel(int column, int row) const {
     const int y = std::clamp(row + dy, 0, height_ - 1);
     for (int dx = -1; dx <= 1; ++dx) {
       const int x = (column + dx + width_) % width_;
-      mean += radiance_[texel(x, y)] * (kWeights[dx + 1] * kWeights[dy + 1]);
+      const Texel& one = texels_[texel(x, y)];
+      mean += Spectrum(one[0], one[1], one[2]) * (kWeights[dx + 1] * kWeights[dy + 1]);
     }
   }
   return mean;

@@ -5,6 +5,7 @@
 /// a ray that escapes. All that is called per path is inline, pure and in single precision.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -70,7 +71,7 @@ class ImageEnvironment {
     const float y = position.v * static_cast<float>(height_);
     const int column = std::clamp(static_cast<int>(x), 0, width_ - 1);
     const int row = std::clamp(static_cast<int>(y), 0, height_ - 1);
-    return {interpolate(x - 0.5F, y - 0.5F), pdf_[texel(column, row)]};
+    return {interpolate(x - 0.5F, y - 0.5F), texels_[texel(column, row)][kPdf]};
   }
 
   /// A direction whose density is what `evaluate` returns.
@@ -110,11 +111,17 @@ class ImageEnvironment {
     if (column1 >= width_) column1 -= width_;
     const int row0 = std::clamp(above, 0, height_ - 1);
     const int row1 = std::clamp(above + 1, 0, height_ - 1);
-    const Spectrum upper =
-        radiance_[texel(column0, row0)] * (1.0F - fx) + radiance_[texel(column1, row0)] * fx;
-    const Spectrum lower =
-        radiance_[texel(column0, row1)] * (1.0F - fx) + radiance_[texel(column1, row1)] * fx;
-    return upper * (1.0F - fy) + lower * fy;
+    const Texel& left0 = texels_[texel(column0, row0)];
+    const Texel& right0 = texels_[texel(column1, row0)];
+    const Texel& left1 = texels_[texel(column0, row1)];
+    const Texel& right1 = texels_[texel(column1, row1)];
+    Texel mean;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const float upper = left0[i] * (1.0F - fx) + right0[i] * fx;
+      const float lower = left1[i] * (1.0F - fx) + right1[i] * fx;
+      mean[i] = upper * (1.0F - fy) + lower * fy;
+    }
+    return {mean[0], mean[1], mean[2]};
   }
 
   /// Mean of the interpolant over a pixel.
@@ -124,8 +131,10 @@ class ImageEnvironment {
 
   int width_, height_;
   UpAxis up_;
-  std::vector<Spectrum> radiance_;
-  std::vector<float> pdf_;          // [1/sr], for each pixel
+  /// R, G, B of a pixel and its density [1/sr], in one register.
+  struct alignas(16) Texel : std::array<float, 4> {};
+  static constexpr std::size_t kPdf = 3;
+  std::vector<Texel> texels_;
   std::vector<float> row_heights_;  // cosine of the zenith angle at the rows' upper edges
   std::vector<AliasEntry> rows_;
   std::vector<AliasEntry> columns_;  // a table for each row

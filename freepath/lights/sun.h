@@ -7,6 +7,7 @@
 
 #include "freepath/base/spectrum.h"
 #include "freepath/base/tangent_frame.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
 
@@ -68,10 +69,9 @@ class Sun {
   Vec3f sample(float u0, float u1) const {
     const float drop = u0 * 0.5F * largest_distance2();  // 1 - cosine
     const float sine = std::sqrt(drop * (2.0F - drop));
-    const float azimuth = 2.0F * std::numbers::pi_v<float> * u1;
+    const SinCos azimuth = sincos_of_turn(u1);
     const TangentFrame frame(direction_);
-    const Vec3f towards =
-        frame.to_world(sine * std::cos(azimuth), sine * std::sin(azimuth), 1.0F - drop);
+    const Vec3f towards = frame.to_world(sine * azimuth.cosine, sine * azimuth.sine, 1.0F - drop);
     if (contains(towards)) return towards;
     // Rounding put a point of the edge outside, by some 1e-5 of the radius.
     const Vec3f inside = direction_ + (towards - direction_) * 0.9999F;

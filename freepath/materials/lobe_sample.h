@@ -8,6 +8,7 @@
 
 #include "freepath/base/channels.h"
 #include "freepath/base/random.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -32,9 +33,9 @@ inline bool same_hemisphere(const Vec3f& a, const Vec3f& b) { return a.z * b.z >
 /// A direction with the density |z| / π on the side of +z: the projection of a point of a disk.
 inline Vec3f sample_cosine_hemisphere(RandomStream& random) {
   const float radius2 = random.uniform();
-  const float azimuth = 2.0F * std::numbers::pi_v<float> * random.uniform();
+  const SinCos azimuth = sincos_of_turn(random.uniform());
   const float radius = std::sqrt(radius2);
-  return {radius * std::cos(azimuth), radius * std::sin(azimuth), std::sqrt(1.0F - radius2)};
+  return {radius * azimuth.cosine, radius * azimuth.sine, std::sqrt(1.0F - radius2)};
 }
 
 inline float cosine_hemisphere_pdf(float cosine) {

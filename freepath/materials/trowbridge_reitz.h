@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -58,10 +59,10 @@ class TrowbridgeReitz {
   Vec3f sample_visible(const Vec3f& direction, float u0, float u1) const {
     const Vec3f stretched =
         Vec3f(direction.x * alpha_x_, direction.y * alpha_y_, direction.z).normalized();
-    const float azimuth = 2.0F * std::numbers::pi_v<float> * u0;
+    const SinCos azimuth = sincos_of_turn(u0);
     const float z = (1.0F - u1) * (1.0F + stretched.z) - stretched.z;
     const float sine = std::sqrt(std::clamp(1.0F - z * z, 0.0F, 1.0F));
-    const Vec3f half = Vec3f(sine * std::cos(azimuth), sine * std::sin(azimuth), z) + stretched;
+    const Vec3f half = Vec3f(sine * azimuth.cosine, sine * azimuth.sine, z) + stretched;
     return Vec3f(half.x * alpha_x_, half.y * alpha_y_, std::max(half.z, 1e-12F)).normalized();
   }
 

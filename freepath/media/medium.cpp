@@ -304,12 +304,16 @@ Box3f Medium::walk_bounds(const WalkPart& part, Interpolation interpolation) con
   return box;
 }
 
-Box3d Medium::world_bounds() const {
+Box3d Medium::world_bounds() const { return bounds_with(0.5); }
+
+Box3d Medium::outer_bounds() const { return bounds_with(1); }
+
+Box3d Medium::bounds_with(double filter) const {
   if (const auto& function = components_[0].density->function) {
     return {Vec3d(function->box.min), Vec3d(function->box.max)};
   }
   Box3d box;
-  const double reach = std::min(reach_, 0.5);
+  const double reach = std::min(reach_, filter);
   for (const Component& component : components_) {
     const BrickMap& map = component.density->voxels;
     for (int corner = 0; corner < 8; ++corner) {

@@ -125,6 +125,9 @@ class Medium {
   Box3f walk_bounds(const WalkPart& part, Interpolation interpolation) const;
   /// Bounds of the active voxels [world].
   Box3d world_bounds() const;
+  /// Bounds of the active voxels with the part over which filters let the densities fade beyond
+  /// their faces [world].
+  Box3d outer_bounds() const;
 
   /// Whether every component's extinction is the same in all channels, so that one path can carry
   /// them all.
@@ -134,6 +137,8 @@ class Medium {
   bool emits() const;
 
  private:
+  /// @param filter how far beyond the outermost voxels' middles it would reach [voxels]
+  Box3d bounds_with(double filter) const;
   std::vector<const Field*> fields() const;
   void build_from_voxels(int super_voxel);
   void build_from_functions();

@@ -16,8 +16,11 @@ namespace freepath::HWY_NAMESPACE {
 
 /// The trilinear interpolant of a field at points [walk space], 0 in lanes that do not look.
 HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[3], MaskF lanes) {
-  VecI voxel[2][3];
+  // Of the two voxels along each axis: where their bricks are in the index, and they in these.
+  VecI brick[2][3];
+  VecI within[2][3];
   VecF weight[2][3];
+  const int brick_steps[3] = {view.brick_counts[1] * view.brick_counts[2], view.brick_counts[2], 1};
   for (int axis = 0; axis < 3; ++axis) {
     VecF place = set(view.walk_to_voxels.offset[axis] - 0.5F);
     for (int from = 0; from < 3; ++from) {
@@ -27,29 +30,28 @@ HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[
     // Maximum and minimum also keep idle lanes inside.
     place = hn::IfThenElseZero(lanes, hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last)));
     const VecF base = hn::Floor(place);
-    voxel[0][axis] = small_to_int(base);
-    voxel[1][axis] = hn::Add(voxel[0][axis], hn::Set(kInt, 1));
+    const VecI first = small_to_int(base);
+    for (int next : {0, 1}) {
+      const VecI voxel = hn::Add(first, hn::Set(kInt, next));
+      const VecI number = hn::ShiftRight<3>(voxel);
+      brick[next][axis] = axis == 2 ? number : hn::Mul(number, hn::Set(kInt, brick_steps[axis]));
+      const VecI inside = hn::And(voxel, hn::Set(kInt, 7));
+      within[next][axis] = axis == 0   ? hn::ShiftLeft<6>(inside)
+                           : axis == 1 ? hn::ShiftLeft<3>(inside)
+                                       : inside;
+    }
     weight[1][axis] = hn::Sub(place, base);
     weight[0][axis] = hn::Sub(set(1.0F), weight[1][axis]);
   }
   const auto* index = reinterpret_cast<const int32_t*>(view.index);
-  const VecI low = hn::Set(kInt, 7);
   VecF sum = hn::Zero(kFloat);
   for (int corner = 0; corner < 8; ++corner) {
     const int cx = corner >> 2;
     const int cy = corner >> 1 & 1;
     const int cz = corner & 1;
-    const VecI& x = voxel[cx][0];
-    const VecI& y = voxel[cy][1];
-    const VecI& z = voxel[cz][2];
-    const VecI row = hn::Add(hn::Mul(hn::ShiftRight<3>(x), hn::Set(kInt, view.brick_counts[1])),
-                             hn::ShiftRight<3>(y));
-    const VecI entry =
-        hn::Add(hn::Mul(row, hn::Set(kInt, view.brick_counts[2])), hn::ShiftRight<3>(z));
-    const VecI within =
-        hn::Or(hn::Or(hn::ShiftLeft<6>(hn::And(x, low)), hn::ShiftLeft<3>(hn::And(y, low))),
-               hn::And(z, low));
-    const VecI address = hn::Or(hn::ShiftLeft<9>(hn::GatherIndex(kInt, index, entry)), within);
+    const VecI entry = hn::Add(hn::Add(brick[cx][0], brick[cy][1]), brick[cz][2]);
+    const VecI voxel = hn::Or(hn::Or(within[cx][0], within[cy][1]), within[cz][2]);
+    const VecI address = hn::Or(hn::ShiftLeft<9>(hn::GatherIndex(kInt, index, entry)), voxel);
     const VecF share = hn::Mul(hn::Mul(weight[cx][0], weight[cy][1]), weight[cz][2]);
     sum = mul_add(share, hn::GatherIndex(kFloat, view.voxels, address), sum);
   }

@@ -12,8 +12,9 @@ constexpr uint32_t kFewestOpenJobs = 2;
 
 }  // namespace
 
-void OpenJobs::begin(const Film& film, std::size_t paths_per_sample) {
+void OpenJobs::begin(const Film& film, std::size_t paths_per_sample, bool is_light) {
   paths_per_sample_ = paths_per_sample;
+  is_light_ = is_light;
   open_count_ = 0;
   waiting_ = 0;
   jobs_.clear();
@@ -32,7 +33,7 @@ std::size_t OpenJobs::place_of(std::size_t paths) const {
   };
   std::size_t lowest = 0;
   if (is_free(lowest)) return lowest;
-  lowest = results.size();
+  lowest = std::max(results.size(), fluxes.size());
   for (const Job& job : jobs_) {
     const std::size_t behind = job.first + job.paths;
     if (job.is_open && behind < lowest && is_free(behind)) lowest = behind;
@@ -48,13 +49,17 @@ uint32_t OpenJobs::open(const PathJob& job, const Film& film) {
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), paths,
                 typename std::decay_t<decltype(values)>::value_type{});
   };
-  renew(results);
+  if (is_light_) {
+    fluxes.resize(std::max(fluxes.size(), first + paths));
+  } else {
+    renew(results);
+  }
   if (film.buckets().count > 0) renew(spectra);
   layers.renew(first, paths, film);
   uint32_t number = 0;
   while (number < jobs_.size() && jobs_[number].is_open) ++number;
   if (number == jobs_.size()) jobs_.emplace_back();
-  jobs_[number] = {job, first, paths, paths, true, {}};
+  jobs_[number] = {job, first, paths, paths, true, {}, {}};
   jobs_[number].counts.paths = paths;
   ++open_count_;
   waiting_ += paths;

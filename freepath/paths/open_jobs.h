@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "freepath/base/channels.h"
+#include "freepath/paths/flux_tally.h"
 #include "freepath/paths/layer_recorder.h"
 #include "freepath/paths/path_job.h"
 #include "freepath/sensors/film.h"
@@ -19,7 +20,8 @@ class OpenJobs {
  public:
   /// Forgets all jobs.
   /// @param paths_per_sample of all that come
-  void begin(const Film& film, std::size_t paths_per_sample);
+  /// @param is_light whether paths are of light, so that they have `fluxes` in place of `results`
+  void begin(const Film& film, std::size_t paths_per_sample, bool is_light = false);
 
   /// Whether another job may begin beside those that are open: what waits takes memory.
   bool has_room() const;
@@ -37,19 +39,29 @@ class OpenJobs {
     std::size_t paths_left = 0;  ///< Those that have not ended.
     bool is_open = false;
     PathCounts counts;  ///< But for walks.
+    /// In what place each sample (pixel by pixel) started, if not in that of its number: results
+    /// lie in the order in which paths start, so that those of paths in flight lie close together.
+    std::vector<uint32_t> started;
+
+    /// Place of the result of a sample's first path.
+    std::size_t result_of(std::size_t sample, std::size_t paths_per_sample) const {
+      return first + (started.empty() ? sample : started[sample]) * paths_per_sample;
+    }
   };
   Job& operator[](uint32_t number) { return jobs_[number]; }
   const Job& operator[](uint32_t number) const { return jobs_[number]; }
 
   std::vector<PathSample> results;
-  std::vector<Channels> spectra;  ///< Of the same paths, if the film records them.
-  LayerRecorder layers;           ///< Of the results.
+  std::vector<Channels> spectra;   ///< Of the same paths, if the film records them.
+  LayerRecorder layers;            ///< Of the results.
+  std::vector<FluxRecord> fluxes;  ///< Of paths of light, which clear theirs as they start.
 
  private:
   /// The lowest place where so many results lie beside those of open jobs.
   std::size_t place_of(std::size_t paths) const;
 
   std::size_t paths_per_sample_ = 1;
+  bool is_light_ = false;
   uint32_t open_count_ = 0;
   std::size_t waiting_ = 0;  // results of open jobs
   std::vector<Job> jobs_;

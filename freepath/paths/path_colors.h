@@ -84,6 +84,8 @@ class ColorFactory {
   uint32_t sets_per_block() const { return sets_per_block_; }
   std::shared_ptr<const PathColors> colors_of_set(uint32_t set) const;
 
+  /// Scatterings in media, by the instructions that walks are taken by.
+  const ScatteringKernels& scattering() const { return kernels(walk_.simd).scattering; }
   /// Growth of the weights of paths in the medium where it is largest.
   const WeightGrowth& weight_growth() const { return weight_growth_; }
 

@@ -66,6 +66,10 @@ Spectrum PathWavefront::transmittance_of(const ScenePath& path) const {
 }
 
 void PathWavefront::finish(ScenePath& path) {
+  if (meter_ != nullptr) {
+    if (!is_finite(path.radiance)) ++jobs_[path.job].counts.overflows;
+    return;
+  }
   PathSample& sample = result_of(path);
   if (!is_finite(path.radiance) || !is_finite(path.rgb) || !std::isfinite(sample.alpha) ||
       !std::isfinite(sample.depth_weight)) {
@@ -86,7 +90,7 @@ void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, 
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
   Channels radiance;
   for (std::size_t c = 0; c < per_sample; ++c) {
-    radiance += jobs_.spectra[done.first + sample * per_sample + c];
+    radiance += jobs_.spectra[done.result_of(sample, per_sample) + c];
   }
   const SamplePlace place = place_of(job, sample);
   const SpectrumValues& values = colors_of(place.pixel, place.sample).spectra;
@@ -103,7 +107,7 @@ void PathWavefront::add_to_film(const OpenJobs::Job& done, Film& film) const {
   const float share = 1.0F / static_cast<float>(per_sample);
   for (std::size_t i = 0; i < job.sample_count(); ++i) {
     // The paths of the channels, always in the same order.
-    const std::size_t first = done.first + i * per_sample;
+    const std::size_t first = done.result_of(i, per_sample);
     PathSample sum = jobs_.results[first];
     LayerSample layers = jobs_.layers[first];
     if (per_sample > 1) {

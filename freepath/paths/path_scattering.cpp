@@ -1,4 +1,4 @@
-// What happens to the paths of a PathWavefront at surfaces and collisions.
+// Surfaces that the paths of a PathWavefront meet.
 
 #include "freepath/paths/path_wavefront.h"
 
@@ -124,11 +124,8 @@ PathWavefront::Departure PathWavefront::depart(const ScenePath& path, const Surf
 }
 
 LightDraw PathWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
-                                    RandomStream& random) const {
-  const float u0 = random.uniform();
-  const float u1 = random.uniform();
-  const float u2 = random.uniform();
-  LightDraw light = scene_.lights->sample(position, spectra, u0, u1, u2);
+                                    const std::array<float, 3>& u) const {
+  LightDraw light = scene_.lights->sample(position, spectra, u[0], u[1], u[2]);
   if (!has_alpha_ || !light.area || light.area->light >= shapes_of_lights_.size()) return light;
   // Paths meet the light with this chance, so that its mean is the same.
   if (const std::optional<uint32_t> shape = shapes_of_lights_[light.area->light]) {
@@ -199,16 +196,6 @@ void PathWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
   jobs_[path.job].counts.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
 }
 
-bool PathWavefront::survives(ScenePath& path, RandomStream& random) const {
-  const float throughput = largest_magnitude(path.throughput);
-  if (throughput == 0) return false;
-  if (throughput >= setup_.roulette_threshold) return true;
-  const float survival = throughput / setup_.roulette_threshold;
-  if (random.uniform() >= survival) return false;
-  path.throughput *= 1.0F / survival;
-  return true;
-}
-
 void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) {
   ScenePath& path = paths_[slot];
   const PathShape& shape = scene_.shapes[hit.point.shape];
@@ -216,7 +203,8 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
   if (jobs_.layers.on()) {
     jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
-  if (path.scatterings++ == 0) {
+  if (meter_ != nullptr) arrive_at_ground(path, hit.point.position);
+  if (path.scatterings++ == 0 && meter_ == nullptr) {
     const SurfaceContext context{setup_.factory->rgb(), scene_.textures};
     record_event(path, hit.t, path.throughput, material.albedo(hit.point, path.direction, context),
                  hit.point.shading_normal);
@@ -230,13 +218,17 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
     path.is_dead = true;
     return;
   }
-  if (!survives(path, random)) {
+  if (!survives(path, random.uniform())) {
     path.is_dead = true;
     return;
   }
   const Vec3f position = hit.point.position;
-  if (!material.is_specular() && scene_.lights->is_drawn()) {
-    const LightDraw light = draw_light(position, path.colors->spectra, random);
+  if (meter_ != nullptr) {
+    show_surface(slot, hit, material, random, context);
+  } else if (!material.is_specular() && scene_.lights->is_drawn()) {
+    // Braces keep the order of draws.
+    const std::array<float, 3> u{random.uniform(), random.uniform(), random.uniform()};
+    const LightDraw light = draw_light(position, path.colors->spectra, u);
     if (light.pdf > 0) {
       const MaterialValue f =
           material.evaluate(hit.point, path.direction, light.direction, random, context);
@@ -265,64 +257,6 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
   const Departure departure = depart(path, hit, next->direction);
   set_place(path, departure.place);
   turn(path, position, departure.origin, next->direction);
-}
-
-void PathWavefront::scatter_in_medium(std::size_t slot, float t, std::size_t component) {
-  ScenePath& path = paths_[slot];
-  const MediumWalkers::Origin scatterer = scatterer_of(path, component);
-  if (jobs_.layers.on()) {
-    jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
-  }
-  if (path.scatterings++ == 0) record_medium_event(path, t, scatterer);
-  RandomStream random(setup_.seed, path.pixel, path.sample_key,
-                      stream_number(StreamPurpose::kScatter, path.flights));
-  if (is_cut(path)) {
-    count_cut(path, Channels(1));
-    path.is_dead = true;
-    return;
-  }
-  if (!survives(path, random)) {
-    path.is_dead = true;
-    return;
-  }
-  const Vec3f position = path.origin + path.direction * t;
-  const PhaseFunction& phase = scene_.media[scatterer.medium].phase(scatterer.component);
-  if (scene_.lights->is_drawn()) {
-    const bool in_rgb = sees_rgb(path);
-    const LightDraw light = draw_light(position, light_spectra(path, in_rgb), random);
-    if (light.pdf > 0) {
-      // The phase function is its own density.
-      const float value = phase.evaluate(path.direction, light.direction);
-      const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
-      const Channels radiance = light_throughput(path, in_rgb) * light.radiance * share;
-      if (!is_black(radiance)) {
-        shadows_.add(static_cast<uint32_t>(slot), path, position, light.direction,
-                     shadow_end(light), path.place, radiance, in_rgb);
-      }
-    }
-  }
-  const EmissionGuide* const guide = guide_of(path.medium);
-  if (guide != nullptr) draw_emission(slot, *guide, position, phase, random);
-  const float u1 = random.uniform();
-  const float u2 = random.uniform();
-  const PhaseSample next = phase.sample(path.direction, u1, u2);
-  path.pdf = next.pdf;
-  turn(path, position, position, next.direction);
-  if (guide != nullptr) {
-    path.emission_share = next.pdf / (next.pdf + guide->pdf(position, next.direction));
-  }
-}
-
-void PathWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
-                                  const Vec3f& position, const PhaseFunction& phase,
-                                  RandomStream& random) {
-  const ScenePath& path = paths_[slot];
-  const auto drawn = guide.sample(position, random);
-  if (!drawn || !(drawn->pdf > 0)) return;
-  // The phase function is its own density; the balance heuristic leaves this of f / pdf.
-  const float value = phase.evaluate(path.direction, drawn->direction);
-  emissions_.add(static_cast<uint32_t>(slot), path, position, drawn->direction,
-                 path.throughput * (value / (value + drawn->pdf)));
 }
 
 }  // namespace freepath

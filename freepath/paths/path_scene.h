@@ -13,6 +13,7 @@
 #include "freepath/materials/material.h"
 #include "freepath/materials/textures/texture_table.h"
 #include "freepath/paths/media_set.h"
+#include "freepath/paths/periodic_domain.h"
 #include "freepath/paths/scene_medium.h"
 #include "freepath/sensors/camera.h"
 #include "freepath/sensors/pixel_filter.h"
@@ -61,6 +62,9 @@ struct PathScene {
   std::optional<SceneLights> lights;
   std::optional<Camera> camera;
   MediaSet camera_media;
+  /// The domain that repeats, if any does. Along the axes that do not repeat all that is in the
+  /// scene is in it; of surfaces that reach beyond its sides nothing is seen there.
+  std::optional<PeriodicDomain> domain;
   float exposure_scale = 1;  ///< What the film multiplies radiance by.
   /// From R, G, B of the light to those of the film, before they are scaled: the balance of white.
   Imath::M33f white_balance;
@@ -76,6 +80,13 @@ struct PathScene {
     if (!alpha) return 1;
     const float value = textures.evaluate(*alpha, point);
     return value > 0 ? std::min(value, 1.0F) : 0.0F;
+  }
+
+  /// Whether a surface bounds a medium.
+  bool has_boundary(MediumId medium) const {
+    return std::any_of(shapes.begin(), shapes.end(), [&](const PathShape& shape) {
+      return shape.inside != shape.outside && (shape.inside == medium || shape.outside == medium);
+    });
   }
 
   /// Whether a flight in a medium from this place need not look for surfaces.

@@ -20,13 +20,15 @@ constexpr uint32_t kLensDimension = 1;
 PathWavefront::PathWavefront(const PathSetup& setup)
     : setup_(setup),
       scene_(*setup.scene),
+      meter_(setup.meter),
       places_(*setup.scene, *setup.factory),
       paths_(setup.slots),
       batches_(setup.slots, true),
+      kernels_(setup.factory->scattering()),
       shadows_(*setup.scene, places_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
   if (scene_.surfaces) hits_.resize(setup.slots);
-  if (!scene_.surfaces && scene_.media.size() == 1) {
+  if (!scene_.surfaces && scene_.media.size() == 1 && !scene_.domain && meter_ == nullptr) {
     const Box3d box = scene_.media[0].outer_bounds();
     everything_ = Box3f(Vec3f(box.min - scene_.origin), Vec3f(box.max - scene_.origin));
     const Vec3f rounding = everything_->size() * 1e-4F;
@@ -46,7 +48,7 @@ PathWavefront::PathWavefront(const PathSetup& setup)
 
 bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   const StopScope scope(jobs.stop);
-  jobs_.begin(film, setup_.factory->paths_per_sample());
+  jobs_.begin(film, setup_.factory->paths_per_sample(), meter_ != nullptr);
   records_spectra_ = film.buckets().count > 0;
   window_ = film.window();
   active_ = next_path_ = paths_of_newest_ = 0;
@@ -56,7 +58,10 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
     if (active_ == 0) return true;
     if (scope.stopped() || jobs.stop()) return false;
     fly();
-    shadows_.trace(paths_, counts_.shadow_rays);
+    shadows_.trace(paths_, counts_.shadow_rays,
+                   [&](const ScenePath& path, uint32_t cell, const Channels& weight) {
+                     deposit(path, cell, weight[0]);
+                   });
     emissions_.trace(paths_, counts_.free_paths);
     if (scope.stopped()) return false;
     end_paths(jobs, film);
@@ -84,7 +89,7 @@ bool PathWavefront::has_next_path(const PathJobSource& jobs, const Film& film) {
   newest_ = jobs_.open(*job, film);
   next_path_ = 0;
   paths_of_newest_ = jobs_[newest_].paths;
-  set_order(*job);
+  set_order(jobs_[newest_]);
   return true;
 }
 
@@ -105,6 +110,10 @@ bool PathWavefront::misses_everything(const ScenePath& path) const {
 bool PathWavefront::fill(std::size_t slot, const PathJobSource& jobs, Film& film) {
   while (has_next_path(jobs, film)) {
     ScenePath& path = paths_[slot];
+    if (meter_ != nullptr) {
+      start_light(next_path_++, path);
+      return true;
+    }
     start_path(next_path_++, path);
     if (!misses_everything(path)) return true;
     escape(path);
@@ -117,7 +126,11 @@ void PathWavefront::end_path(ScenePath& path, const PathJobSource& jobs, Film& f
   finish(path);
   OpenJobs::Job& job = jobs_[path.job];
   if (--job.paths_left > 0) return;
-  add_to_film(job, film);
+  if (meter_ == nullptr) {
+    add_to_film(job, film);
+  } else {
+    add_to_tally(job);
+  }
   counts_.merge(job.counts);
   jobs.finished(job.job);
   jobs_.close(path.job);
@@ -125,7 +138,7 @@ void PathWavefront::end_path(ScenePath& path, const PathJobSource& jobs, Film& f
 
 void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
   for (std::size_t slot = 0; slot < active_;) {
-    if (!paths_[slot].is_dead) {
+    if (!paths_[slot].is_dead || take_branch(paths_[slot])) {
       ++slot;
       continue;
     }
@@ -139,7 +152,8 @@ void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
   }
 }
 
-void PathWavefront::set_order(const PathJob& job) {
+void PathWavefront::set_order(OpenJobs::Job& opened) {
+  const PathJob& job = opened.job;
   const std::size_t total = job.sample_count();
   order_.resize(total);
   std::iota(order_.begin(), order_.end(), uint32_t{0});
@@ -147,6 +161,7 @@ void PathWavefront::set_order(const PathJob& job) {
   // Flights of one set are walked together.
   begin_of_set_.assign(setup_.colors.size() + 1, 0);
   sets_.resize(total);
+  opened.started.resize(total);
   for (std::size_t i = 0; i < total; ++i) {
     const SamplePlace place = place_of(job, i);
     sets_[i] = setup_.factory->set_of(place.pixel, place.sample) - setup_.first_set;
@@ -154,7 +169,8 @@ void PathWavefront::set_order(const PathJob& job) {
   }
   std::partial_sum(begin_of_set_.begin(), begin_of_set_.end(), begin_of_set_.begin());
   for (std::size_t i = 0; i < total; ++i) {
-    order_[begin_of_set_[sets_[i]]++] = static_cast<uint32_t>(i);
+    opened.started[i] = begin_of_set_[sets_[i]]++;
+    order_[opened.started[i]] = static_cast<uint32_t>(i);
   }
 }
 
@@ -182,7 +198,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   const uint32_t ordered = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
   const auto [picture_pixel, sample_number] = place_of(jobs_[newest_].job, ordered);
-  path.result = static_cast<uint32_t>(jobs_[newest_].first) + ordered * per_sample + channel;
+  path.result = static_cast<uint32_t>(jobs_[newest_].first) + number;
   path.pixel = picture_pixel;
   path.sample_key = sample_number * per_sample + channel;
   // The paths of a sample start one after the other.
@@ -190,7 +206,8 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   path.colors = colors_of_sample_;
   const int channels = path.colors->spectra.channels();
   if (per_sample > 1) {
-    path.channel = path.hero = channel;
+    path.channel = channel;
+    path.hero = static_cast<uint8_t>(channel);
     path.only_hero = true;
     path.throughput[channel] = 1;
   } else {
@@ -212,12 +229,18 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   path.origin = path.turned_at = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;
   set_place(path, camera_place_);
+  if (scene_.domain) {
+    if (const auto entry = scene_.domain->enter(ray.origin - scene_.origin, path.direction)) {
+      path.origin = path.turned_at = entry->origin;
+      path.distance = entry->way;
+    }
+  }
   // Media choose heroes of their own.
   if (per_sample == 1 && scene_.surfaces) {
     RandomStream random(setup_.seed, path.pixel, path.sample_key,
                         stream_number(StreamPurpose::kCamera, 0));
-    path.hero =
-        std::min(static_cast<int>(random.uniform() * static_cast<float>(channels)), channels - 1);
+    const auto drawn = static_cast<int>(random.uniform() * static_cast<float>(channels));
+    path.hero = static_cast<uint8_t>(std::min(drawn, channels - 1));
   }
 }
 
@@ -229,8 +252,7 @@ bool PathWavefront::needs_surfaces_first(const ScenePath& path) const {
 void PathWavefront::find_surface(ScenePath& path) {
   path.surfaces_known = true;
   if (!scene_.surfaces) return;
-  const auto hit = scene_.surfaces->intersect(path.origin, path.direction, 0,
-                                              std::numeric_limits<float>::infinity());
+  const auto hit = scene_.surfaces->intersect(path.origin, path.direction, 0, path.side);
   path.ends_at_surface = hit.has_value();
   if (hit) hit_of(path) = *hit;
 }
@@ -239,16 +261,17 @@ void PathWavefront::fly() {
   batches_.clear();
   for (std::size_t slot = 0; slot < active_; ++slot) {
     ScenePath& path = paths_[slot];
+    set_side(path);
     if (needs_surfaces_first(path)) find_surface(path);
     if (path.medium == kVacuum) {
-      fly_in_vacuum(slot);
+      end_flight(slot);
       continue;
     }
     const Walker& walker = path.colors->walker(path.medium, path.channel);
     auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(slot));
     RayStream& rays = batch.rays;
     set_ray(rays, i, path.origin, path.direction,
-            path.ends_at_surface ? hit_of(path).t : std::numeric_limits<float>::infinity());
+            path.ends_at_surface ? hit_of(path).t : path.side);
     rays.pixel[i] = path.pixel;
     rays.sample[i] = path.sample_key;
     rays.stream[i] = stream_number(StreamPurpose::kWalk, path.flights);
@@ -264,15 +287,41 @@ void PathWavefront::fly() {
       take_flight(batch->owners[i], *batch->walker, i, batch->rays.weighted());
     }
   }
+  scatter_in_media();
 }
 
-void PathWavefront::fly_in_vacuum(std::size_t slot) {
+void PathWavefront::set_side(ScenePath& path) const {
+  if (scene_.domain) {
+    path.side = scene_.domain->way_to_side(path.origin, path.direction);
+  } else if (meter_ != nullptr) {
+    path.side = meter_->way_to_plane(path.origin, path.direction, path.level);
+  }
+}
+
+void PathWavefront::pass_side(ScenePath& path) {
+  if (path.scatterings == 0) path.distance += path.side;
+  RandomStream random(setup_.seed, path.pixel, path.sample_key,
+                      stream_number(StreamPurpose::kScatter, path.flights));
+  go_on(path, scene_.domain->beyond_side(path.origin, path.direction, path.side), path.direction);
+  if (++path.sides % PeriodicDomain::kSidesPerRoulette != 0) return;
+  if (random.uniform() < PeriodicDomain::kSurvival) {
+    path.throughput *= 1 / PeriodicDomain::kSurvival;
+  } else {
+    path.is_dead = true;
+  }
+}
+
+void PathWavefront::end_flight(std::size_t slot) {
   ScenePath& path = paths_[slot];
   if (!path.surfaces_known) find_surface(path);
   if (path.ends_at_surface) {
     meet_surface(slot);
+  } else if (path.side == std::numeric_limits<float>::infinity()) {
+    meter_ == nullptr ? escape(path) : leave_meter(path);
+  } else if (scene_.domain) {
+    pass_side(path);
   } else {
-    escape(path);
+    pass_plane(slot);
   }
 }
 
@@ -289,7 +338,9 @@ void PathWavefront::take_flight(std::size_t slot, const Walker& walker, std::siz
     }
   } else {
     // A walker of one channel serves all, or the only one that there is.
-    path.radiance += path.throughput * (flights_.emitted[0][i] * path.emission_share);
+    if (const float emitted = flights_.emitted[0][i]; emitted != 0) {
+      path.radiance += path.throughput * (emitted * path.emission_share);
+    }
     path.throughput *= flights_.weight[0][i];
   }
   if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
@@ -299,23 +350,21 @@ void PathWavefront::take_flight(std::size_t slot, const Walker& walker, std::siz
   }
   switch (flights_.event[i]) {
     case Event::kAbsorb:
-      if (path.scatterings == 0) {
+      if (meter_ != nullptr) {
+        const Vec3f position = path.origin + path.direction * flights_.t[i];
+        deposit(path, meter_->cell(Flux::kAbsorbed, meter_->column(position)), path.throughput[0]);
+      } else if (path.scatterings == 0) {
         record_medium_event(path, flights_.t[i], scatterer_of(path, flights_.component[i]));
       }
       path.is_dead = true;
       return;
     case Event::kScatter:
-      scatter_in_medium(slot, flights_.t[i], flights_.component[i]);
+      collide(slot, flights_.t[i], flights_.component[i]);
       return;
     case Event::kEscape:
       break;
   }
-  if (!path.surfaces_known) find_surface(path);
-  if (path.ends_at_surface) {
-    meet_surface(slot);
-  } else {
-    escape(path);
-  }
+  end_flight(slot);
 }
 
 void PathWavefront::escape(ScenePath& path) {

@@ -9,6 +9,8 @@
 
 #include "freepath/base/random.h"
 #include "freepath/paths/emission_tracer.h"
+#include "freepath/paths/flux_meter.h"
+#include "freepath/paths/flux_tally.h"
 #include "freepath/paths/open_jobs.h"
 #include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_job.h"
@@ -17,6 +19,7 @@
 #include "freepath/paths/shadow_tracer.h"
 #include "freepath/paths/walk_batches.h"
 #include "freepath/sensors/film.h"
+#include "freepath/transport/scattering_stream.h"
 
 namespace freepath {
 
@@ -35,10 +38,14 @@ struct PathSetup {
   /// Whether scatterings in emissive media also look for their light along lines of its own; where
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
-  std::size_t slots = 2048;  ///< Paths in flight in a wavefront.
+  std::size_t slots = kPathsInFlight;
   /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const PathColors>> colors;
   uint32_t first_set = 0;
+  /// Where paths begin at a meter, as light does, and not at the camera: what there is of it, and
+  /// who sums what they bring. Such paths carry one channel, and lights have no part in it.
+  const FluxMeter* meter = nullptr;
+  FluxTally* tally = nullptr;
 };
 
 /// Traces paths through a scene: to the next surface or collision, scatter with next-event
@@ -57,6 +64,10 @@ class PathWavefront {
   /// Traces one job.
   bool trace(const PathJob& job, Film& film, const std::function<bool()>& stop = {});
 
+  /// Traces paths of light, a chunk of them in each job: `samples` from `first_sample` on, the
+  /// upper half of whose numbers is `first_pixel`.
+  bool trace(const PathJobSource& jobs);
+
   /// Counts over all jobs that were finished; those of walks over dropped ones too.
   const PathCounts& counts() const { return counts_; }
 
@@ -70,8 +81,8 @@ class PathWavefront {
   bool misses_everything(const ScenePath& path) const;
   /// Takes in a path that has ended, and its job if that has with it.
   void end_path(ScenePath& path, const PathJobSource& jobs, Film& film);
-  /// Fills order_.
-  void set_order(const PathJob& job);
+  /// Fills order_, and tells the job.
+  void set_order(OpenJobs::Job& opened);
   struct SamplePlace {
     uint32_t pixel;   ///< Of the picture.
     uint32_t sample;  ///< Of the pixel.
@@ -91,7 +102,10 @@ class PathWavefront {
   }
   /// Sends all paths on: those in vacuum at once, others by their walkers.
   void fly();
-  void fly_in_vacuum(std::size_t slot);
+  /// Where no collision has ended a ray.
+  void end_flight(std::size_t slot);
+  void set_side(ScenePath& path) const;
+  void pass_side(ScenePath& path);
   void take_flight(std::size_t slot, const Walker& walker, std::size_t i, bool weighted);
   /// Whether the surface at which a ray ends has to be known before it flies.
   bool needs_surfaces_first(const ScenePath& path) const;
@@ -136,13 +150,22 @@ class PathWavefront {
     return {light.distance, ShadowEnd::Target{*shape, light.area->primitive}};
   }
   /// A light for a position; what its own alpha leaves of it.
+  /// @param u numbers in [0, 1), as SceneLights::sample() takes them
   LightDraw draw_light(const Vec3f& position, const SpectrumValues& spectra,
-                       RandomStream& random) const;
+                       const std::array<float, 3>& u) const;
   /// Whether a path goes on at a surface as if there were none.
   bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
-  void scatter_in_medium(std::size_t slot, float t, std::size_t component);
+  /// Puts a path that a medium scatters into the queue for it.
+  void collide(std::size_t slot, float t, std::size_t component);
+  /// Scatters those in the queue: draws lights for them and where they go on.
+  void scatter_in_media();
+  /// Draws the light for a scattering in the queue.
+  void draw_light_of(std::size_t scattering);
+  /// Casts a ray towards that light.
+  void cast_shadow(std::size_t scattering);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
+    if (meter_ != nullptr || scene_.domain) return nullptr;
     const bool wanted = setup_.samples_emission.value_or(!setup_.factory->glow_is_spread(medium));
     return wanted ? setup_.factory->guide(medium) : nullptr;
   }
@@ -153,8 +176,9 @@ class PathWavefront {
   /// @param albedo of what would scatter it
   void count_cut(const ScenePath& path, const Channels& albedo);
   /// By Russian roulette.
+  /// @param u in (0, 1)
   /// @return false if the path has ended
-  bool survives(ScenePath& path, RandomStream& random) const;
+  bool survives(ScenePath& path, float u) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   /// The same in a new direction.
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
@@ -168,13 +192,30 @@ class PathWavefront {
   /// R, G, B on the film of both parts of a radiance.
   Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
   Spectrum transmittance_of(const ScenePath& path) const;
+  // Paths of light: path_fluxes.cpp.
+  void start_light(std::size_t path_number, ScenePath& path);
+  FluxRecord& record_of(const ScenePath& path) { return jobs_.fluxes[path.result]; }
+  /// Counts a weight of a path in a cell.
+  void deposit(const ScenePath& path, uint32_t cell, float weight);
+  void leave_meter(ScenePath& path);
+  void arrive_at_ground(const ScenePath& path, const Vec3f& position);
+  void absorb_part(const ScenePath& path, const Vec3f& position, std::size_t component);
+  void show_collision(std::size_t slot, const Vec3f& position, const PhaseFunction& phase);
+  void show_surface(std::size_t slot, const SurfaceHit& hit, const Material& material,
+                    RandomStream& random, const SurfaceContext& context);
+  void pass_plane(std::size_t slot);
+  /// Goes on with a branch of a path that has ended, if one waits.
+  bool take_branch(ScenePath& path);
+
   void finish(ScenePath& path);
   void add_to_film(const OpenJobs::Job& done, Film& film) const;
+  void add_to_tally(const OpenJobs::Job& done);
   /// @param sample of the job
   void add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const;
 
   const PathSetup& setup_;
   const PathScene& scene_;
+  const FluxMeter* meter_;  // of the setup
   MediaPlaces places_;
   PlaceId camera_place_ = 0;
   std::optional<Box3f> everything_;                        // around the medium, if that is all
@@ -187,6 +228,17 @@ class PathWavefront {
   std::size_t active_ = 0;
   WalkBatches batches_;
   FlightStream flights_;
+  /// A path that a medium scatters, of the same number in scatterings_.
+  struct Scattering {
+    std::size_t slot = 0;
+    Vec3f position{0};
+    const PhaseFunction* phase = nullptr;
+    bool in_rgb = false;  ///< Whether the light is.
+    LightDraw light;
+  };
+  const ScatteringKernels& kernels_;
+  ScatteringStream scatterings_;
+  std::array<Scattering, ScatteringStream::kCapacity> scattered_;
   ShadowTracer shadows_;
   EmissionTracer emissions_;
   OpenJobs jobs_;

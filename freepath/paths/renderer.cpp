@@ -3,10 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "freepath/base/error.h"
+#include "freepath/base/threads.h"
 #include "freepath/paths/pass_renderer.h"
 #include "freepath/paths/path_wavefront.h"
 
@@ -70,7 +72,11 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   if (!are_same(chromaticities, RgbChromaticities())) {
     result.film.set_chromaticities(chromaticities);
   }
-  const ColorFactory factory(scene, mode, settings.wavelengths, settings.walk);
+  std::optional<ColorFactory> made;  // by the threads that are asked for
+  Threads(settings.threads).execute([&] {
+    made.emplace(scene, mode, settings.wavelengths, settings.walk);
+  });
+  const ColorFactory& factory = *made;
   if (!settings.studies_unbounded_weights) {
     require_bounded_weights(factory.weight_growth(), settings.max_scatterings);
     if (!scene.media.empty()) {

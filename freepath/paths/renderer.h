@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "freepath/paths/path_job.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/sensors/film.h"
 #include "freepath/transport/walker.h"
@@ -40,8 +41,9 @@ struct RenderSettings {
   std::function<double()> clock = {};
   /// Called between passes, by the thread that renders, with what there is.
   std::function<void(const Film&)> on_pass = {};
-  std::size_t batch = 2048;  ///< Paths in flight per thread; the picture does not depend on it.
-  WalkSettings walk;         ///< Its origin is that of the scene.
+  /// Paths in flight per thread; the picture does not depend on it.
+  std::size_t batch = kPathsInFlight;
+  WalkSettings walk;  ///< Its origin is that of the scene.
 };
 
 /// What is done so far.

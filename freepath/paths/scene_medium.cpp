@@ -124,24 +124,7 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
   return bound;
 }
 
-Box3d SceneMedium::outer_bounds() const {
-  Box3d box = bounds_;
-  const auto extend = [&](const Matrix4d& index_to_world) {
-    Vec3d voxel(0);  // of the box around one
-    for (int i = 0; i < 3; ++i) {
-      for (int axis = 0; axis < 3; ++axis) voxel[axis] += std::abs(index_to_world[i][axis]);
-    }
-    // Filters reach half of one beyond the faces.
-    box.extendBy(bounds_.min - voxel);
-    box.extendBy(bounds_.max + voxel);
-  };
-  if (colors_) extend(colors_->index_to_world);
-  if (!medium_) return box;
-  for (const Component& component : medium_->components()) {
-    if (!component.density->function) extend(component.density->index_to_world);
-  }
-  return box;
-}
+Box3d SceneMedium::outer_bounds() const { return medium_ ? medium_->outer_bounds() : bounds_; }
 
 std::size_t SceneMedium::bytes_of_set(int wavelengths) const {
   if (!colors_) return 0;

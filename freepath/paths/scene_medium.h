@@ -85,11 +85,14 @@ class SceneMedium {
   std::size_t bytes_of_set(int wavelengths) const;
   /// What it fills [world].
   const Box3d& bounds() const { return bounds_; }
-  /// Beyond which it is nowhere, whatever filter its voxels are read by [world].
+  /// Beyond which it is nowhere, whatever filter its voxels are read by [world]: what it fills and,
+  /// if it is not cut off there, half a voxel more.
   Box3d outer_bounds() const;
   /// Null where voxels depend on wavelengths.
   const std::shared_ptr<const Medium>& medium() const { return medium_; }
   const std::vector<SceneMediumComponent>& components() const { return components_; }
+  /// Those voxels; null of media that have none.
+  const std::shared_ptr<const ColorVoxels>& colors() const { return colors_; }
   /// Whether it is the same everywhere in its bounds.
   bool is_homogeneous() const { return is_homogeneous_; }
   /// The same in another box; only of a homogeneous one.

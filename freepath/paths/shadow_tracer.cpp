@@ -32,7 +32,18 @@ ShadowTracer::ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t
                              [](const Material& material) { return material.has_holes(); }) ||
                  std::any_of(scene.shapes.begin(), scene.shapes.end(),
                              [](const PathShape& shape) { return shape.alpha.has_value(); })),
+      is_open_(!scene.surfaces && !scene.domain),
       batches_(slots, false) {}
+
+void ShadowTracer::add_open(const ScenePath& path, MediumId medium, const Vec3f& origin,
+                            const Vec3f& direction, float end) {
+  const Walker& walker = path.colors->walker(medium, path.channel);
+  auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(arrivals_.size() - 1));
+  set_ray(batch.rays, slot, origin, direction, end);
+  batch.rays.pixel[slot] = path.pixel;
+  batch.rays.sample[slot] = path.sample_key;
+  batch.rays.stream[slot] = stream_of(path.flights, 0);
+}
 
 void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin,
                                float end) {
@@ -41,8 +52,7 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId pl
   if (medium == kVacuum) return;
   const Walker& walker = path.colors->walker(medium, path.channel);
   auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
-  segments_.emplace_back(1.0F);
-  owners_.push_back(shadow.owner);
+  segments_.push_back({static_cast<uint32_t>(&shadow - shadows_.data())});
   set_ray(batch.rays, slot, shadow.origin + shadow.direction * begin, shadow.direction,
           end - begin);
   batch.rays.pixel[slot] = path.pixel;
@@ -50,15 +60,15 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId pl
   batch.rays.stream[slot] = stream_of(path.flights, shadow.segments++);
 }
 
-bool ShadowTracer::passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit,
-                          PlaceId& place) {
+bool ShadowTracer::passes(const Shadow& shadow, Arrival& arrival, const ScenePath& path,
+                          const SurfaceHit& hit, PlaceId& place) {
   const float alpha = scene_.alpha_at(hit.point);
   if (alpha == 0) return true;
   const PathShape& shape = scene_.shapes[hit.point.shape];
   const SurfaceContext context{path.colors->spectra, scene_.textures, path.hero, path.only_hero};
   if (shape.material &&
       !scene_.materials[*shape.material].is_hole(hit.point, shadow.direction, context)) {
-    shadow.radiance *= 1 - alpha;
+    arrival.radiance *= 1 - alpha;
     return alpha < 1;
   }
   // Media on both sides of it have no mean.
@@ -70,7 +80,7 @@ bool ShadowTracer::passes(Shadow& shadow, const ScenePath& path, const SurfaceHi
   return true;
 }
 
-void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) {
+void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
   float begin = 0;
   PlaceId place = shadow.place;
@@ -88,17 +98,17 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) 
     const Vec3f beyond = surfaces.offset_ray_origin(hit->point, shadow.direction);
     const float end = begin + hit->t;
     add_segment(shadow, path, place, begin, end);
-    bool is_free = ends || passes(shadow, path, *hit, place);
+    bool is_free = ends || passes(shadow, arrival, path, *hit, place);
     for (const TiedSurface& tied : ties_) {
       // What a ray from beyond meets may wait.
       if (!surfaces.is_beyond(tied.place, beyond, shadow.direction)) continue;
       const SurfaceHit there = surfaces.describe(origin, shadow.direction, tied);
       ends = ends || is_end(there.place);
-      is_free = is_free && (ends || passes(shadow, path, there, place));
+      is_free = is_free && (ends || passes(shadow, arrival, path, there, place));
     }
     if (ends) return;
     if (!is_free) {
-      shadow.radiance = Channels();
+      arrival.radiance = Channels();
       return;
     }
     begin = end;
@@ -107,10 +117,37 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, const ScenePath& path) 
   add_segment(shadow, path, place, begin, shadow.end.distance);
 }
 
-void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
-  shadow.first_segment = static_cast<uint32_t>(segments_.size());
+void ShadowTracer::trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
+  if (scene_.domain) {
+    trace_domain(shadow, arrival, path);
+  } else {
+    trace_part(shadow, arrival, path);
+  }
+}
+
+void ShadowTracer::trace_domain(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
+  const ShadowEnd end = shadow.end;
+  float left = end.distance;
+  for (uint32_t sides = 0;;) {
+    const float side = scene_.domain->way_to_side(shadow.origin, shadow.direction);
+    const bool is_last = !(side < left);
+    shadow.end = is_last ? ShadowEnd{left, end.target} : ShadowEnd{side};
+    trace_part(shadow, arrival, path);
+    if (is_last || is_black(arrival.radiance)) return;
+    left -= side;
+    shadow.origin = scene_.domain->beyond_side(shadow.origin, shadow.direction, side);
+    if (++sides % PeriodicDomain::kSidesPerRoulette != 0) continue;
+    RandomStream random(seed_, path.pixel, path.sample_key,
+                        stream_of(path.flights, shadow.segments++));
+    const bool survives = random.uniform() < PeriodicDomain::kSurvival;
+    arrival.radiance *= survives ? 1 / PeriodicDomain::kSurvival : 0.0F;
+    if (!survives) return;
+  }
+}
+
+void ShadowTracer::trace_part(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
   if (has_holes_ && scene_.surfaces) {
-    trace_porous_surfaces(shadow, path);
+    trace_porous_surfaces(shadow, arrival, path);
     return;
   }
   if (!scene_.surfaces) {
@@ -123,7 +160,7 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
   while (true) {
     if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings_,
                                   last ? &*last : nullptr)) {
-      shadow.radiance = Channels();
+      arrival.radiance = Channels();
       return;
     }
     for (const BoundaryCrossing& crossing : crossings_.all()) {
@@ -141,36 +178,48 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, const ScenePath& path) {
   add_segment(shadow, path, place, begin, shadow.end.distance);
 }
 
-void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {
-  if (shadows_.empty()) return;
+void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics,
+                         const Deposit& deposit) {
+  if (arrivals_.empty()) return;
   if (scene_.surfaces) {
-    for (Shadow& shadow : shadows_) trace_surfaces(shadow, paths[shadow.owner]);
+    for (std::size_t i = 0; i < shadows_.size(); ++i) {
+      trace_surfaces(shadows_[i], arrivals_[i], paths[arrivals_[i].owner]);
+    }
   }
   for (WalkBatches::Batch* const batch : batches_.finish()) {
     batch->walker->transmittance(batch->rays, flights_, statistics);
     const int channels = batch->walker->transmittance_channels();
     for (std::size_t i = 0; i < batch->count; ++i) {
-      const uint32_t segment = batch->owners[i];
-      if (channels == 1) {
-        segments_[segment] = Channels(flights_.weight[0][i]);
+      const uint32_t owner = batch->owners[i];
+      Channels transmittance(flights_.weight[0][i]);
+      for (int c = 1; c < channels; ++c) transmittance[c] = flights_.weight[c][i];
+      if (is_open_) {
+        arrivals_[owner].radiance *= transmittance;
+        arrivals_[owner].lookups = flights_.lookups[i];
       } else {
-        for (int c = 0; c < channels; ++c) segments_[segment][c] = flights_.weight[c][i];
+        segments_[owner].transmittance = transmittance;
+        segments_[owner].lookups = flights_.lookups[i];
       }
-      paths[owners_[segment]].lookups += flights_.lookups[i];
     }
   }
-  for (Shadow& shadow : shadows_) {
-    // In the order of the ray's way, whatever batches there were.
-    for (uint32_t i = 0; i < shadow.segments; ++i) {
-      shadow.radiance *= segments_[shadow.first_segment + i];
-    }
-    ScenePath& path = paths[shadow.owner];
-    (shadow.is_rgb ? path.rgb : path.radiance) += shadow.radiance;
+  // In the order of the rays' ways, whatever batches there were.
+  for (const Segment& segment : segments_) {
+    arrivals_[segment.arrival].radiance *= segment.transmittance;
+    arrivals_[segment.arrival].lookups += segment.lookups;
   }
+  for (const Arrival& arrival : arrivals_) {
+    ScenePath& path = paths[arrival.owner];
+    path.lookups += arrival.lookups;
+    if (arrival.cell != kNoCell) {
+      deposit(path, arrival.cell, arrival.radiance);
+      continue;
+    }
+    (arrival.is_rgb ? path.rgb : path.radiance) += arrival.radiance;
+  }
+  arrivals_.clear();
   shadows_.clear();
   batches_.clear();
   segments_.clear();
-  owners_.clear();
 }
 
 }  // namespace freepath

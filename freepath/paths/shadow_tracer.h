@@ -2,6 +2,7 @@
 /// @file Light on its way from a scattering to a light.
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "freepath/base/channels.h"
@@ -17,6 +18,8 @@ namespace freepath {
 /// end, then through the media between them.
 class ShadowTracer {
  public:
+  static constexpr uint32_t kNoCell = UINT32_MAX;
+
   /// @param scene,places must outlive this
   ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed, std::size_t slots);
 
@@ -25,44 +28,76 @@ class ShadowTracer {
   /// @param place at its origin
   /// @param radiance what it adds if nothing is in between
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
+  /// @param cell of a FluxMeter that it is to add to, and not to the path; kNoCell: none
   void add(uint32_t owner, const ScenePath& path, const Vec3f& origin, const Vec3f& direction,
-           const ShadowEnd& end, PlaceId place, const Channels& radiance, bool is_rgb) {
-    shadows_.push_back({origin, direction, end, radiance, place, owner, is_rgb});
-    if (!scene_.surfaces) trace_surfaces(shadows_.back(), path);  // while its path is at hand
+           const ShadowEnd& end, PlaceId place, const Channels& radiance, bool is_rgb,
+           uint32_t cell = kNoCell) {
+    arrivals_.push_back({radiance, owner, cell, is_rgb});
+    if (is_open_) {
+      const MediumId medium = places_.medium(place);
+      if (medium != kVacuum) add_open(path, medium, origin, direction, end.distance);
+      return;
+    }
+    shadows_.push_back({origin, direction, end, place});
+    // While its path is at hand.
+    if (!scene_.surfaces) trace_surfaces(shadows_.back(), arrivals_.back(), path);
   }
 
-  /// Traces all rays, adds to their paths, and forgets them.
-  void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics);
+  /// Takes what a ray adds to a cell.
+  using Deposit = std::function<void(const ScenePath&, uint32_t cell, const Channels&)>;
+  /// Traces all rays, adds to their paths or cells, and forgets them.
+  void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics, const Deposit& deposit);
 
  private:
+  /// What a ray brings, and whom.
+  struct Arrival {
+    Channels radiance;
+    uint32_t owner;
+    uint32_t cell;
+    bool is_rgb;
+    uint32_t lookups = 0;
+  };
+  /// The ray of an arrival, where it may meet more than one medium.
   struct Shadow {
     Vec3f origin, direction;
     ShadowEnd end;
-    Channels radiance;
     PlaceId place;
-    uint32_t owner;
-    bool is_rgb;
-    uint32_t first_segment = 0, segments = 0;
+    uint32_t segments = 0;
+  };
+  /// A ray's way through one medium.
+  struct Segment {
+    uint32_t arrival;
+    Channels transmittance{1.0F};
+    uint32_t lookups = 0;
   };
 
+  /// Sends a ray to the walker of the one medium on its way.
+  void add_open(const ScenePath& path, MediumId medium, const Vec3f& origin, const Vec3f& direction,
+                float end);
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
-  void trace_surfaces(Shadow& shadow, const ScenePath& path);
+  void trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
+  /// The same from side to side of a domain that repeats.
+  void trace_domain(Shadow& shadow, Arrival& arrival, const ScenePath& path);
+  /// The same of a ray that meets no side.
+  void trace_part(Shadow& shadow, Arrival& arrival, const ScenePath& path);
   /// The same where surfaces have holes or are there in part: place by place.
-  void trace_porous_surfaces(Shadow& shadow, const ScenePath& path);
+  void trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
   /// Whether a ray goes on at a surface, which it crosses then; what is there in part takes its
   /// part.
-  bool passes(Shadow& shadow, const ScenePath& path, const SurfaceHit& hit, PlaceId& place);
+  bool passes(const Shadow& shadow, Arrival& arrival, const ScenePath& path, const SurfaceHit& hit,
+              PlaceId& place);
   void add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin, float end);
 
   const PathScene& scene_;
   MediaPlaces& places_;
   uint64_t seed_;
-  bool has_holes_ = false;          // whether a material or an alpha of the scene has
-  std::vector<Channels> segments_;  // transmittances, ray after ray, each in the order of its way
-  std::vector<uint32_t> owners_;    // of the segments
+  bool has_holes_ = false;  // whether a material or an alpha of the scene has
+  bool is_open_ = false;    // whether each ray has at most one medium on its way
+  std::vector<Arrival> arrivals_;
+  std::vector<Segment> segments_;  // ray after ray, each in the order of its way
   WalkBatches batches_;
   FlightStream flights_;
-  std::vector<Shadow> shadows_;
+  std::vector<Shadow> shadows_;    // of all arrivals, unless they are open
   std::vector<TiedSurface> ties_;  // of one ray, as the crossings
   BoundaryCrossings crossings_;
 };

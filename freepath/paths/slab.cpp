@@ -1,29 +1,19 @@
 #include "freepath/paths/slab.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "freepath/base/threads.h"
-#include "freepath/paths/slab_paths.h"
+#include "freepath/paths/path_scene.h"
+#include "freepath/spectra/rgb_color_space.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/weight_growth.h"
 
 namespace freepath {
 namespace {
-
-/// Paths that are traced and summed together. A constant, since sums depend on it.
-constexpr uint64_t kPathsPerChunk = 16384;
-/// Chunks whose sums are held until they are merged in order.
-constexpr uint64_t kChunksPerPass = 4096;
 
 constexpr float kLargestBoundScale = 1000;
 
@@ -31,10 +21,6 @@ void check_settings(const SlabSettings& settings) {
   if (!settings.diffuse && !(settings.mu0 > 0 && settings.mu0 <= 1)) {
     fail("mu0 is {}; the cosine of incidence lies in (0, 1], 1 being along the normal",
          settings.mu0);
-  }
-  if (settings.paths < 1) fail("paths is 0; at least one path must be traced");
-  if (settings.threads < 0) {
-    fail("threads is {}; give a number from 1 on, or 0 for all", settings.threads);
   }
   if (!(settings.bound_scale >= 1 && settings.bound_scale <= kLargestBoundScale)) {
     fail("the bounds can't be scaled by {}: from 1, tight, to {} is possible", settings.bound_scale,
@@ -76,86 +62,69 @@ void check_growth(std::span<const SlabLayer> layers, const SlabMedium& slab,
   fail("{}; the variance may be infinite in these layers", growth.reason);
 }
 
-/// Traces all chunks, and merges their sums in order.
-SlabSums trace_chunks(const SlabMedium& slab, const Walker& walker, const SlabSettings& settings,
-                      const SlabProgress& progress) {
-  Threads threads(settings.threads);
-  tbb::enumerable_thread_specific<SlabPaths> paths(
-      [&] { return SlabPaths(slab, walker, settings); });
-  const uint64_t chunks = (settings.paths - 1) / kPathsPerChunk + 1;
-  SlabSums total;
-  std::atomic<bool> stop = false;
-  std::mutex mutex;
-  uint64_t done = 0;
-  const auto trace_chunk = [&](uint64_t chunk) {
-    const uint64_t first = chunk * kPathsPerChunk;
-    const uint64_t count = std::min(kPathsPerChunk, settings.paths - first);
-    const SlabSums sums = paths.local().trace(first, count);
-    if (progress) {
-      const std::lock_guard lock(mutex);
-      done += count;
-      if (!progress(done, settings.paths)) stop = true;
-    }
-    return sums;
+/// The layers as a scene: their medium, and nothing around it.
+PathScene make_scene(SlabMedium&& slab) {
+  PathScene scene;
+  scene.spectra = std::make_unique<SpectrumTable>(rgb_color_space("srgb"));
+  const auto add = [&](float coefficient) {
+    return scene.spectra->add(double{coefficient}, SpectrumRole::kReflectance);
   };
-  std::vector<SlabSums> sums;
-  for (uint64_t begin = 0; begin < chunks && !stop; begin += kChunksPerPass) {
-    const uint64_t end = std::min(chunks, begin + kChunksPerPass);
-    sums.assign(end - begin, SlabSums{});
-    threads.execute([&] {
-      tbb::parallel_for(
-          tbb::blocked_range<uint64_t>(begin, end, 1),
-          [&](const tbb::blocked_range<uint64_t>& range) {
-            for (uint64_t chunk = range.begin(); chunk < range.end() && !stop; ++chunk) {
-              sums[chunk - begin] = trace_chunk(chunk);
-            }
-          },
-          tbb::simple_partitioner());
-    });
-    for (const SlabSums& chunk : sums) total.merge(chunk);
+  std::vector<SceneMediumComponent> components;
+  for (const Component& component : slab.medium.components()) {
+    SceneMediumComponent& target = components.emplace_back();
+    target.sigma_a = add(component.sigma_a[0]);
+    target.sigma_s = add(component.sigma_s[0]);
+    target.phase = component.phase;
   }
-  return total;
+  scene.media.emplace_back("layers", std::make_shared<const Medium>(std::move(slab.medium)),
+                           std::move(components));
+  scene.camera_media.add(0, 1);
+  return scene;
+}
+
+FluxMeter make_meter(SlabMedium& slab, const SlabSettings& settings) {
+  // As wide as anything: all places of one depth are the same.
+  FluxMeter meter(Box3d(Vec3d(0), Vec3d(1, 1, slab.thickness)), 2, false);
+  const auto mu = static_cast<float>(settings.mu0);
+  if (!settings.diffuse) meter.beam = Vec3f(std::sqrt((1.0F - mu) * (1.0F + mu)), 0, mu);
+  meter.has_no_bottom = slab.half_space;
+  meter.splits = std::move(slab.splits);
+  return meter;
 }
 
 }  // namespace
 
 SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& settings,
-                      const SlabProgress& progress) {
+                      const FluxProgress& progress) {
   check_settings(settings);
   SlabMedium slab =
       make_slab_medium(layers, settings.super_voxel, settings.diffuse ? 1 : settings.mu0);
   if (settings.bound_scale != 1) slab.medium = slab.medium.with_scaled_bounds(settings.bound_scale);
   WalkSettings walk = settings.walk;
   walk.interpolation = Interpolation::kNearest;
-  std::string reason;
-  if (walk.tracker == kAutoTracker) {
-    TrackerChoice choice = choose_tracker(slab.medium);
-    walk.tracker = std::move(choice.tracker);
-    reason = std::move(choice.reason);
-  }
+  TrackerChoice choice = settle_tracker(walk.tracker, slab.medium);
+  walk.tracker = std::move(choice.tracker);
   check_growth(layers, slab, walk);
   // Weights that grow would split without end.
   if (!weight_growth(channels_of(slab.medium, 0), walk).bounded()) slab.splits.clear();
-  // Layers are grey: a tracker that would give each channel its own path needs one.
-  const Walker walker(slab.medium, walk,
-                      shares_paths(slab.medium, walk) ? Walker::kAllChannels : 0);
-  const SlabSums sums = trace_chunks(slab, walker, settings, progress);
-  if (!std::isfinite(sums.total.squares)) {
-    fail(
-        "tracker {}: the weights of paths overflow in these layers; choose a rate that bounds the "
-        "extinction",
-        walk.tracker);
-  }
+  FluxSettings flux;
+  flux.paths = settings.paths;
+  flux.threads = settings.threads;
+  flux.batch = settings.batch;
+  flux.roulette_threshold = settings.roulette_threshold;
+  flux.tells_absorption = false;          // it is all that does not leave
+  flux.studies_unbounded_weights = true;  // check_growth knows more of layers
+  flux.walk = walk;
+  const FluxMeter meter = make_meter(slab, settings);
+  const FluxResult fluxes = trace_flux(make_scene(std::move(slab)), meter, flux, progress);
   SlabResult result;
-  const bool scatters = std::any_of(layers.begin(), layers.end(),
-                                    [](const SlabLayer& layer) { return layer.albedo > 0; });
-  result.reflectance = sums.top.estimate(sums.paths, scatters);
-  result.transmittance = sums.bottom.estimate(sums.paths, !slab.half_space);
-  result.unscattered = sums.unscattered.estimate(sums.paths, !slab.half_space);
-  result.total = sums.total.estimate(sums.paths, scatters || !slab.half_space);
-  result.largest_weight = sums.largest_weight;
-  result.paths = sums.paths;
-  result.tracker_reason = std::move(reason);
+  result.reflectance = fluxes.reflectance.all;
+  result.transmittance = fluxes.transmittance.all;
+  result.unscattered = fluxes.unscattered.all;
+  result.total = fluxes.leaving;
+  result.largest_weight = fluxes.largest_weight;
+  result.paths = fluxes.paths;
+  result.tracker_reason = std::move(choice.reason);
   result.tracker = to_string(parse_method(walk.tracker, tracker_infos()), tracker_infos());
   return result;
 }

@@ -1,19 +1,18 @@
 #pragma once
-/// @file Plane-parallel layers: reflectance and transmittance by the same walk as the renderer's.
+/// @file Plane-parallel layers: fluxes through a medium that changes with depth alone.
 ///
 /// The classical problem of radiative transfer, with published answers [vandeHulst80] to check the
 /// whole chain against: medium, super-voxels, tracker, phase function, roulette.
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "freepath/media/medium.h"
 #include "freepath/media/phase/phase_function.h"
+#include "freepath/paths/flux.h"
 #include "freepath/transport/walker.h"
 
 namespace freepath {
@@ -31,10 +30,10 @@ struct SlabSettings {
   double mu0 = 1;        ///< Cosine of incidence, in (0, 1].
   bool diffuse = false;  ///< Instead of mu0: the same radiance from all directions above.
   uint64_t paths = 1'000'000;
-  int threads = 0;           ///< 0: as many as the machine has.
-  int super_voxel = 0;       ///< Edge of a super-voxel [voxels], 0 for automatic.
-  float bound_scale = 1;     ///< Looseness of bounds, see Medium::with_scaled_bounds(); at least 1.
-  std::size_t batch = 2048;  ///< Paths in flight per thread; the result does not depend on it.
+  int threads = 0;          ///< 0: as many as the machine has.
+  int super_voxel = 0;      ///< Edge of a super-voxel [voxels], 0 for automatic.
+  float bound_scale = 1;    ///< Looseness of bounds, see Medium::with_scaled_bounds(); at least 1.
+  std::size_t batch = 512;  ///< Paths in flight per thread; the result does not depend on it.
   /// Russian roulette is played where the weight's magnitude is below this.
   float roulette_threshold = 0.25F;
   /// Tracker, absorption, seed, instructions. The interpolation is always nearest: layers are
@@ -42,22 +41,13 @@ struct SlabSettings {
   WalkSettings walk;
 };
 
-/// A mean over paths and its standard error, from the variance of single paths.
-struct SlabEstimate {
-  double mean = 0;
-  double error = 0;
-  /// Upper limit at a confidence of 95 %, where no path brought anything although some could: the
-  /// mean and the error are 0 then, and say nothing.
-  std::optional<double> upper;
-};
-
 /// Fluxes, as fractions of the flux that comes in. Light comes in through the top of the first
 /// layer.
 struct SlabResult {
-  SlabEstimate reflectance;    ///< What leaves through the top.
-  SlabEstimate transmittance;  ///< What leaves through the bottom, scattered or not.
-  SlabEstimate unscattered;    ///< The part of the transmittance that never scattered.
-  SlabEstimate total;          ///< What leaves at all: 1 - absorptance.
+  Estimate reflectance;    ///< What leaves through the top.
+  Estimate transmittance;  ///< What leaves through the bottom, scattered or not.
+  Estimate unscattered;    ///< The part of the transmittance that never scattered.
+  Estimate total;          ///< What leaves at all: 1 - absorptance.
   /// Largest magnitude of a weight that left. Far above 1 (a tracker whose rate is no bound), the
   /// variance may be infinite and the errors say little.
   double largest_weight = 0;
@@ -66,15 +56,12 @@ struct SlabResult {
   std::string tracker;         ///< As it was understood, options that are not standard included.
 };
 
-/// Called with the paths done and in all, by one thread at a time; false ends the tracing after the
-/// paths at work.
-using SlabProgress = std::function<bool(uint64_t done, uint64_t total)>;
-
 /// Layers as a medium: densities are columns of voxels along z, and x and y are collapsed, so that
 /// wherever a ray is, it sees the same column. World space: the top is z = 0 and z grows downwards;
 /// the unit is the mean free path in the layer of largest tau, whose density is 1.
 struct SlabMedium {
   Medium medium;
+  double thickness = 0;     ///< [world]
   bool half_space = false;  ///< Whether what arrives at the bottom is to be forgotten.
   /// Depths [world], from the top down, at which paths split on their way down, so that their
   /// number stays about the same where light decays by many powers of ten; empty where it does not.
@@ -93,6 +80,6 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel =
 /// @throws Error as make_slab_medium, for settings out of range, methods that do not exist, and
 ///   trackers whose weights may have an infinite variance in these layers
 SlabResult trace_slab(std::span<const SlabLayer> layers, const SlabSettings& settings,
-                      const SlabProgress& progress = {});
+                      const FluxProgress& progress = {});
 
 }  // namespace freepath

@@ -214,8 +214,8 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel, 
   world_to_index[0][0] = world_to_index[1][1] = 0;
   world_to_index[2][2] = 1 / column.edge;
   world_to_index[3][2] = -0.5;
-  return {Medium(std::move(components), super_voxel, world_to_index), std::isinf(layers.back().tau),
-          make_splits(layers, taus, column, mu0)};
+  return {Medium(std::move(components), super_voxel, world_to_index), column.voxels * column.edge,
+          std::isinf(layers.back().tau), make_splits(layers, taus, column, mu0)};
 }
 
 }  // namespace freepath

@@ -34,9 +34,8 @@ class WalkBatches {
     std::size_t slot;
   };
   Place add(const Walker& walker, uint32_t owner) {
-    uint32_t& guess = guess_of(walker);
-    if (guess >= used_ || batches_[guess].walker != &walker) guess = find(walker);
-    Batch& batch = batches_[guess];
+    if (last_ >= used_ || batches_[last_].walker != &walker) last_ = number_of(walker);
+    Batch& batch = batches_[last_];
     const std::size_t slot = batch.count++;
     if (slot == batch.owners.size()) resize(batch, 2 * slot);
     batch.owners[slot] = owner;
@@ -48,6 +47,11 @@ class WalkBatches {
 
  private:
   /// The number of a walker's batch, which is made if there is none.
+  uint32_t number_of(const Walker& walker) {
+    uint32_t& guess = guess_of(walker);
+    if (guess >= used_ || batches_[guess].walker != &walker) guess = find(walker);
+    return guess;
+  }
   uint32_t find(const Walker& walker);
   static void resize(Batch& batch, std::size_t rays);
 
@@ -63,6 +67,7 @@ class WalkBatches {
   std::array<uint32_t, 1U << kGuessBits> guesses_{};
   std::vector<Batch> batches_;  // of walkers, those beyond used_ to be used again
   uint32_t used_ = 0;
+  uint32_t last_ = 0;  // of the ray before
   std::vector<Batch*> finished_;
 };
 

@@ -41,25 +41,26 @@ void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
   if (last) add_brick(*last);
 }
 
-/// Straight up or down no horizon tells what is up in the picture; then north is.
-Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
-  const Vec3d world_up(up_vector(up));
-  const Vec3d sight = line_of_sight.normalized();
-  const bool vertical = sight.cross(world_up).length() < 1e-4;
-  return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
-}
-
-/// The film is as large as what the perspective camera sees where it looks at.
-Camera orthographic(const View& view, int width, int height) {
-  const double extent = half_extent(view.fov) * (view.at - view.from).length();
+/// The film of a parallel camera is as large as what the perspective one sees where it looks at.
+CameraModel model_of(const View& view, CameraKind kind, int width, int height) {
   const double aspect = static_cast<double>(width) / height;
-  OrthographicCamera camera;
-  camera.screen_window = {-extent * aspect, extent * aspect, -extent, extent};
-  return {camera, world_from_camera(view), width, height};
+  switch (kind) {
+    case CameraKind::kPerspective:
+      break;
+    case CameraKind::kOrthographic: {
+      const double extent = half_extent(view.fov) * (view.at - view.from).length();
+      OrthographicCamera camera;
+      camera.screen_window = {-extent * aspect, extent * aspect, -extent, extent};
+      return camera;
+    }
+    case CameraKind::kSpherical:
+      return SphericalCamera{SphericalMapping::kEquirectangular};
+  }
+  return pinhole(view, width, height);
 }
 
 /// The middle of the picture is where the equirectangular map has -x.
-Camera spherical(const View& view, UpAxis up, int width, int height) {
+Matrix4d upright_matrix(const View& view, UpAxis up) {
   const Vec3d above(up_vector(up));
   Vec3d ahead = view.at - view.from;
   ahead -= above * above.dot(ahead);
@@ -67,9 +68,7 @@ Camera spherical(const View& view, UpAxis up, int width, int height) {
     ahead = Vec3d(sky_direction(0, 0, up));
   }
   ahead.normalize();
-  const Vec3d right = ahead.cross(above);
-  return {SphericalCamera{SphericalMapping::kEquirectangular},
-          camera_matrix(-ahead, above, -right, view.from), width, height};
+  return camera_matrix(-ahead, above, -ahead.cross(above), view.from);
 }
 
 Camera camera_of(std::span<const Vec3d> points, const CameraOptions& options, UpAxis up) {
@@ -78,18 +77,30 @@ Camera camera_of(std::span<const Vec3d> points, const CameraOptions& options, Up
   if (options.from) view.from = *options.from;
   if (options.at) view.at = *options.at;
   view.up = picture_up(view.at - view.from, up);
-  switch (options.kind) {
-    case CameraKind::kPerspective:
-      break;
-    case CameraKind::kOrthographic:
-      return orthographic(view, options.width, options.height);
-    case CameraKind::kSpherical:
-      return spherical(view, up, options.width, options.height);
-  }
-  return {view, options.width, options.height};
+  return view_camera(view, options.kind, up, options.width, options.height);
 }
 
 }  // namespace
+
+Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up) {
+  const Vec3d world_up(up_vector(up));
+  const Vec3d sight = line_of_sight.normalized();
+  const bool vertical = sight.cross(world_up).length() < 1e-4;
+  return vertical ? Vec3d(sky_direction(0, 0, up)) : world_up;
+}
+
+Camera view_camera(const View& view, CameraKind kind, UpAxis up, int width, int height,
+                   bool is_mirrored) {
+  const CameraModel model = model_of(view, kind, width, height);
+  Matrix4d matrix =
+      kind == CameraKind::kSpherical ? upright_matrix(view, up) : world_from_camera(view);
+  if (is_mirrored) {
+    // To the right: what a spherical camera has a quarter behind its edge.
+    const int right = kind == CameraKind::kSpherical ? 2 : 0;
+    for (int axis = 0; axis < 3; ++axis) matrix[right][axis] = -matrix[right][axis];
+  }
+  return {model, matrix, width, height};
+}
 
 Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up) {
   std::vector<Vec3d> corners;

@@ -30,6 +30,16 @@ struct CameraOptions {
   std::optional<Vec3d> at = {};    ///< [world]
 };
 
+/// Upwards in a picture whose line of sight this is: where it is vertical, no horizon tells, and
+/// north is.
+Vec3d picture_up(const Vec3d& line_of_sight, UpAxis up);
+
+/// The camera of a kind that has a view; a spherical one stands upright.
+/// @param is_mirrored as Camera::is_mirrored
+/// @throws Error as Camera
+Camera view_camera(const View& view, CameraKind kind, UpAxis up, int width, int height,
+                   bool is_mirrored = false);
+
 /// @param medium what to frame where the options name no position
 /// @throws Error as Camera and frame_points
 Camera make_camera(const Medium& medium, const CameraOptions& options, UpAxis up);

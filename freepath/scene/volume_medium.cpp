@@ -166,14 +166,17 @@ std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, Spectru
 
 }  // namespace
 
-VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel) {
+VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel, const PeriodicSides& sides) {
+  VolumeMedium result;
+  if (sides.any()) {
+    result.sides = {sides.axes, repeat_sides(volumes, sides)};
+  }
   std::vector<Field*> fields;
   for (Volume& volume : volumes) {
     for (Field& field : volume.densities) fields.push_back(&field);
   }
   if (!fields.empty()) share_layout(fields);
   std::vector<Component> components;
-  VolumeMedium result;
   for (Volume& volume : volumes) {
     add_components(std::move(volume), components, result.temperatures);
   }

@@ -13,9 +13,10 @@ namespace freepath {
 
 /// A scene of a medium that fills its own bounds, and of nothing else but the ground. Colours
 /// become spectra as those of scenes do, and are as given where R, G and B are rendered.
+/// @param camera none where fluxes alone are measured
 /// @throws Error for a radiance that is negative or not finite, an albedo not in [0, 1], and as
 ///   to_scene_medium
-PathScene make_volume_scene(const VolumeMedium& medium, const Camera& camera,
+PathScene make_volume_scene(const VolumeMedium& medium, const std::optional<Camera>& camera,
                             const Surroundings& surroundings,
                             const std::optional<Ground>& ground = {});
 

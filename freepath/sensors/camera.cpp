@@ -113,16 +113,6 @@ void check_distance(const char* what, const Vec3d& point) {
   }
 }
 
-/// The angle of view is vertical, whichever side of the film is the shorter one.
-PerspectiveCamera pinhole(const View& view, int width, int height) {
-  check_film(width, height);
-  const double aspect = static_cast<double>(width) / height;
-  PerspectiveCamera camera;
-  camera.fov = view.fov;
-  camera.screen_window = {-aspect, aspect, -1, 1};
-  return camera;
-}
-
 }  // namespace
 
 Matrix4d camera_matrix(const Vec3d& right, const Vec3d& up, const Vec3d& ahead,
@@ -158,6 +148,15 @@ Matrix4d world_from_camera(const View& view) {
   }
   const Vec3d right = forward.cross(view.up).normalized();
   return camera_matrix(right, right.cross(forward), forward, view.from);
+}
+
+PerspectiveCamera pinhole(const View& view, int width, int height) {
+  check_film(width, height);
+  const double aspect = static_cast<double>(width) / height;
+  PerspectiveCamera camera;
+  camera.fov = view.fov;
+  camera.screen_window = {-aspect, aspect, -1, 1};
+  return camera;
 }
 
 double half_extent(double fov) {
@@ -253,6 +252,28 @@ Camera::Camera(const CameraModel& model, const Matrix4d& world_from_camera, int 
 
 Camera::Camera(const View& view, int width, int height)
     : Camera(pinhole(view, width, height), world_from_camera(view), width, height) {}
+
+Vec3d Camera::up() const {
+  if (const auto* camera = std::get_if<Projective>(&rays_)) return -camera->step_y;
+  return Vec3d(std::get<Spherical>(rays_).up);
+}
+
+bool Camera::is_mirrored() const {
+  if (const auto* camera = std::get_if<Projective>(&rays_)) {
+    return camera->step_x.cross(-camera->step_y).dot(Vec3d(camera->ahead)) > 0;
+  }
+  const auto& camera = std::get<Spherical>(rays_);
+  return camera.right.cross(camera.up).dot(camera.ahead) > 0;
+}
+
+std::optional<double> Camera::vertical_angle() const {
+  const auto* const camera = std::get_if<Projective>(&rays_);
+  if (camera == nullptr || camera->is_parallel) return std::nullopt;
+  const float middle = 0.5F * static_cast<float>(width_);
+  const Vec3d top(ray(middle, 0).direction);
+  const Vec3d bottom(ray(middle, static_cast<float>(height_)).direction);
+  return std::atan2(top.cross(bottom).length(), top.dot(bottom)) * 180 / std::numbers::pi;
+}
 
 CameraRay Camera::ray(float film_x, float film_y, float lens_u, float lens_v) const {
   if (const auto* camera = std::get_if<Projective>(&rays_)) {

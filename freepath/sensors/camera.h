@@ -80,6 +80,11 @@ struct SphericalCamera {
   SphericalMapping mapping = SphericalMapping::kEqualArea;
 };
 
+/// The camera of a view, without a lens and with square pixels: the angle of view is vertical,
+/// whichever side of the film is the shorter one.
+/// @throws Error for a film without pixels
+PerspectiveCamera pinhole(const View& view, int width, int height);
+
 using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera>;
 
 /// A camera. Immutable; threads share it.
@@ -107,6 +112,17 @@ class Camera {
   Vec3d place() const {
     return ray(0.5F * static_cast<float>(width_), 0.5F * static_cast<float>(height_)).origin;
   }
+
+  /// Upwards in the picture, from any point of it [world].
+  Vec3d up() const;
+
+  /// Whether what it shows is that of a world whose axes are left-handed, as pbrt's are: to its
+  /// right, upwards and ahead are a right-handed system.
+  bool is_mirrored() const;
+
+  /// The angle that rays through the middle column of the film fill, if they leave from one point
+  /// and not to all sides [degrees].
+  std::optional<double> vertical_angle() const;
 
   /// Whether rays depend on the point of the lens.
   bool has_lens() const;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "freepath/base/error.h"
+#include "freepath/base/moments.h"
 
 namespace freepath {
 
@@ -20,14 +21,6 @@ bool all_finite(const PathSample& sample) {
 float to_float(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
-}
-
-/// Variance of the mean of `samples` values.
-double variance_of_mean(double sum, double sum_of_squares, double samples) {
-  const double mean = sum / samples;
-  const double mean_square = sum_of_squares / samples;
-  if (samples < 2 || !std::isfinite(mean_square)) return mean_square;
-  return std::max(0.0, mean_square - mean * mean) / (samples - 1);
 }
 
 void add_to(double* sums, const Spectrum& value) {
@@ -159,8 +152,8 @@ void Film::put_layer(Layer layer, std::size_t pixel, std::vector<float>& values)
     case Layer::kVariance:
       for (int c = 0; c < kChannels; ++c) {
         // As a float it may be infinite, and then says so.
-        values.push_back(
-            static_cast<float>(variance_of_mean(sums.radiance[c], sums.squares[c], n)));
+        const Moments moments{sums.radiance[c], sums.squares[c]};
+        values.push_back(static_cast<float>(moments.variance(std::max(sums.samples, 1U)) / n));
       }
       return;
     case Layer::kSamples:

@@ -83,7 +83,7 @@ class Lab {
   std::vector<LabSetting> read_settings() const {
     if (options_.paths < 1) fail("there are no paths to walk");
     for (const std::string& tracker : options_.trackers) {
-      if (tracker != kAutoTracker) parse_method(tracker, tracker_infos());
+      parse_method(tracker, tracker_choices());
     }
     std::vector<std::string> names = options_.settings;
     if (names.empty()) {

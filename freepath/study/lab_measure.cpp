@@ -187,7 +187,7 @@ double lab_weight_edge(int bin) {
 }
 
 std::string lab_tracker(const LabSetting& setting, const std::string& tracker) {
-  return tracker == kAutoTracker ? choose_tracker(medium_along_ray(setting)).tracker : tracker;
+  return settle_tracker(tracker, medium_along_ray(setting)).tracker;
 }
 
 LabMeasurement measure_tracker(const LabSetting& setting, const LabCurves& curves,

@@ -71,18 +71,6 @@ std::vector<MergedBin> merge_bins(std::span<const LabMoments> bins, std::span<co
 
 }  // namespace
 
-double LabMoments::mean(uint64_t paths) const { return sum / static_cast<double>(paths); }
-
-double LabMoments::variance(uint64_t paths) const {
-  const auto n = static_cast<double>(paths);
-  if (!std::isfinite(squares)) return squares;
-  return std::max(0.0, squares / n - sum / n * (sum / n));
-}
-
-double LabMoments::standard_error(uint64_t paths) const {
-  return std::sqrt(variance(paths) / static_cast<double>(paths));
-}
-
 bool LabMoments::has_normal_mean(uint64_t paths) const {
   const auto n = static_cast<double>(paths);
   const double m = mean(paths);
@@ -111,7 +99,7 @@ LabCheck check_mean(const LabMoments& moments, uint64_t paths, double exact) {
   const double z = beyond == 0 ? 0 : beyond / check.standard_error;
   check.z = std::copysign(std::min(z, kFar), off);
   check.p = normal_two_sided_p(check.z);
-  if (moments.count < kFew || exact * static_cast<double>(paths) < kFewExpected) {
+  if (moments.contributions < kFew || exact * static_cast<double>(paths) < kFewExpected) {
     check.standing = LabStanding::kRare;
   } else if (!moments.has_normal_mean(paths)) {
     check.standing = LabStanding::kHeavy;
@@ -136,7 +124,7 @@ LabCheck check_distribution(std::span<const LabMoments> bins, std::span<const do
       check.p = 0;
       return check;
     }
-    const bool few = bin.moments.count < kFewInBin;
+    const bool few = bin.moments.contributions < kFewInBin;
     if (few || !bin.moments.has_normal_mean(paths)) {  // counts with the escapes, so to speak
       heavy += few ? 0 : 1;
       continue;

@@ -5,34 +5,25 @@
 #include <cstdint>
 #include <span>
 
+#include "freepath/base/moments.h"
+
 namespace freepath {
 
 /// Power sums of contributions; a path that contributes nothing need not be added.
-struct LabMoments {
-  uint64_t count = 0;  ///< Of contributions that are not 0.
-  double sum = 0, squares = 0, cubes = 0, fourths = 0;
+struct LabMoments : Moments {
+  double cubes = 0, fourths = 0;
 
   void add(double value) {
-    if (value == 0) return;
-    ++count;
+    Moments::add(value);
     const double square = value * value;
-    sum += value;
-    squares += square;
     cubes += square * value;
     fourths += square * square;
   }
   void merge(const LabMoments& other) {
-    count += other.count;
-    sum += other.sum;
-    squares += other.squares;
+    Moments::merge(other);
     cubes += other.cubes;
     fourths += other.fourths;
   }
-  /// Of one path, among so many.
-  double mean(uint64_t paths) const;
-  double variance(uint64_t paths) const;
-  /// Of the mean.
-  double standard_error(uint64_t paths) const;
   /// Whether the mean over so many paths is as good as normal: its skewness is below 0.05 and its
   /// excess below 0.01 (the next terms of Edgeworth's series).
   bool has_normal_mean(uint64_t paths) const;

@@ -21,15 +21,13 @@
 #define FREEPATH_TRACKING_WALK_INL_H_
 #endif
 
-#include <bit>
-
 #include "freepath/base/lanes-inl.h"
 #include "freepath/tracking/collision-inl.h"
 #include "freepath/tracking/random-inl.h"
 #include "freepath/tracking/ray_dealer-inl.h"
-#include "freepath/tracking/statistics.h"
 #include "freepath/tracking/streams.h"
 #include "freepath/tracking/walk_group-inl.h"
+#include "freepath/tracking/walk_tally-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
@@ -58,13 +56,11 @@ class Walk {
         modes_(modes),
         seed_(seed),
         ray_count_(rays.size()),
-        statistics_(statistics),
-        dealer_(tracker, segments, medium, seed, rays, entry, flights),
-        largest_weight_(hn::Zero(kFloat)) {}
+        tally_(statistics),
+        dealer_(tracker, segments, medium, seed, rays, entry, flights) {}
 
   void run() {
     HWY_ALIGN_MAX Team teams[2] = {};
-    statistics_.rays += ray_count_;
     for (Team& team : teams) {
       for (Group& group : team) dealer_.refill(group);
     }
@@ -74,8 +70,7 @@ class Walk {
       alive = advance(teams[0], teams[1]);
       alive |= advance(teams[1], teams[0]);
     }
-    statistics_.largest_weight =
-        std::max(statistics_.largest_weight, hn::GetLane(hn::MaxOfLanes(kFloat, largest_weight_)));
+    tally_.finish(ray_count_);
   }
 
  private:
@@ -118,7 +113,7 @@ class Walk {
     const MaskF drawing = mask_of(group.drawing);
     const MaskU fresh = uint_mask(drawing);
     VecF tau = hn::Load(kFloat, group.tau);
-    const auto second = [&] { return second_words(group, block).words[0]; };
+    const auto second = [&] { return group.second_words(block, seed_).words[0]; };
     assign(tau, drawing, exponential_lanes(random.words[0], drawing, second));
     hn::Store(tau, kFloat, group.tau);
     hn::Store(hn::IfThenElse(drawing, tau, hn::Load(kFloat, group.fresh)), kFloat, group.fresh);
@@ -130,21 +125,6 @@ class Walk {
       hn::Store(hn::IfThenElse(fresh, random.words[i + 1], old), kUint, group.words[i]);
     }
     hn::Store(hn::Add(block, hn::IfThenElseZero(fresh, hn::Set(kUint, 1))), kUint, group.block);
-  }
-
-  HWY_INLINE RandomWords second_words(const Group& group, VecU block) const {
-    return HWY_NAMESPACE::second_words(block, hn::Load(kUint, group.stream),
-                                       hn::Load(kUint, group.sample), hn::Load(kUint, group.pixel),
-                                       seed_);
-  }
-
-  /// The number that chooses the event at a tentative collision.
-  HWY_INLINE VecF event_uniform(const Group& group, MaskF lanes) const {
-    const auto second = [&] {
-      const VecU block = hn::Sub(hn::Load(kUint, group.block), hn::Set(kUint, 1));
-      return second_words(group, block).words[1];
-    };
-    return uniform_lanes(hn::Load(kUint, group.words[0]), lanes, second);
   }
 
   /// Draws the optical depth anew in lanes that go on at `t`: what is left of it is exponential
@@ -184,7 +164,7 @@ class Walk {
     VecF tau = hn::Load(kFloat, group.tau);
     VecF rate = hn::Load(kFloat, group.rate);
     VecF exit = hn::Load(kFloat, group.exit);
-    statistics_.super_voxel_steps += static_cast<uint64_t>(std::popcount(group.searching));
+    tally_.steps(group.searching);
     const auto segment = segments_.segment(cursor, searching);
     const auto bounds = medium_.template bounds<Tracker::kRateNeedsControl>(segment);
     const VecF rate_here = rate_of(bounds, group);
@@ -280,7 +260,7 @@ class Walk {
   template <class Record>
   HWY_INLINE void draw_component(const Record& record, Group& group) const {
     const MaskF lanes = mask_of(group.colliding);
-    VecF uniform = event_uniform(group, lanes);
+    VecF uniform = group.event_uniform(lanes, seed_);
     VecF rate = hn::Load(kFloat, group.rate);
     const VecI component =
         medium_.draw_component(record, group.random(seed_), lanes, uniform, rate);
@@ -321,7 +301,7 @@ class Walk {
   /// Lets the control decide what it can without a look-up.
   HWY_INLINE void decide(const VecF (&point)[3], Group& group) {
     Collision<N> c = begin_collision(group, group.colliding);
-    c.uniform = event_uniform(group, c.lanes);
+    c.uniform = group.event_uniform(c.lanes, seed_);
     auto control = medium_.coefficients(group.control);
     if (varies_emission()) medium_.add_emission(group.control, point, c.lanes, control);
     const MaskF decided = tracker_.template decide<N>(modes_, control, c);
@@ -336,12 +316,8 @@ class Walk {
     const VecU count = hn::Load(kUint, group.control_decided);
     const VecU one = hn::IfThenElseZero(uint_mask(decided), hn::Set(kUint, 1));
     hn::Store(hn::Add(count, one), kUint, group.control_decided);
-    const auto decisions = static_cast<uint64_t>(std::popcount(bits));
-    statistics_.tentative_collisions += decisions;
-    statistics_.real_collisions += decisions;
-    statistics_.control_collisions += decisions;
     c.lanes = decided;
-    count_weights(c);
+    tally_.decisions(bits, c);
   }
 
   /// Reads the coefficients, lets the tracker decide, and counts.
@@ -351,7 +327,7 @@ class Walk {
       c.uniform = hn::Load(kFloat, group.uniform);
       c.rate = hn::IfThenElse(c.lanes, hn::Load(kFloat, group.rest_rate), set(1.0F));
     } else {
-      c.uniform = event_uniform(group, c.lanes);
+      c.uniform = group.event_uniform(c.lanes, seed_);
     }
     VecF rows[Group::kStoredRows];
     group.load_rows(rows);
@@ -395,38 +371,13 @@ class Walk {
     group.store_rows(rows, c.lanes);
     end_collision(c, group);
     group.drawing = group.colliding & ~(group.scattered | group.absorbed);
-    count(group, sigma_t, c);
+    tally_.collisions(group.looking, (group.scattered | group.absorbed) & group.looking,
+                      Group::lookups_per_collision(medium_), c);
+    if constexpr (Tracker::kNeedsBound) tally_.violations(sigma_t, c);
   }
 
   /// Whether emission is wanted and varies from place to place.
   HWY_INLINE bool varies_emission() const { return modes_.emits && medium_.has_radiance_fields(); }
-
-  HWY_INLINE void count(const Group& group, VecF sigma_t, const Collision<N>& c) {
-    const auto collisions = static_cast<uint64_t>(std::popcount(group.looking));
-    const auto real =
-        static_cast<uint64_t>(std::popcount((group.scattered | group.absorbed) & group.looking));
-    statistics_.tentative_collisions += collisions;
-    statistics_.real_collisions += real;
-    statistics_.null_collisions += collisions - real;
-    statistics_.lookups += collisions * Group::lookups_per_collision(medium_);
-    count_weights(c);
-    if constexpr (Tracker::kNeedsBound) {
-      // Rounding of an interpolated maximum is no violation.
-      const MaskF above = hn::Gt(sigma_t, mul_add(c.full_rate, set(0.00001F), c.rate));
-      statistics_.bound_violations += hn::CountTrue(kFloat, hn::And(above, c.lanes));
-    }
-  }
-
-  HWY_INLINE void count_weights(const Collision<N>& c) {
-    MaskF negative = no_lanes();
-    for (int channel = 0; channel < N; ++channel) {
-      const VecF now = hn::IfThenElseZero(c.lanes, c.weight[channel]);
-      largest_weight_ = hn::Max(largest_weight_, hn::Abs(now));
-      // Where the density reaches its bound, rounding may leave a trifle below 0.
-      negative = hn::Or(negative, hn::Lt(now, set(-1e-6F)));
-    }
-    statistics_.negative_weights += hn::CountTrue(kFloat, negative);
-  }
 
   const Tracker& tracker_;
   const Segments& segments_;
@@ -434,9 +385,8 @@ class Walk {
   const WalkModes& modes_;
   uint64_t seed_;
   std::size_t ray_count_;
-  WalkStatistics& statistics_;
+  WalkTally<N> tally_;
   RayDealer<N, Tracker, Segments, Medium, Entry> dealer_;
-  VecF largest_weight_;
 };
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -73,6 +73,19 @@ struct WalkGroup {
     return {block, stream, sample, pixel, seed};
   }
 
+  HWY_INLINE RandomWords second_words(VecU of_block, uint64_t seed) const {
+    return HWY_NAMESPACE::second_words(of_block, hn::Load(kUint, stream), hn::Load(kUint, sample),
+                                       hn::Load(kUint, pixel), seed);
+  }
+
+  /// The number that chooses the event at a tentative collision.
+  HWY_INLINE VecF event_uniform(MaskF lanes, uint64_t seed) const {
+    const auto second = [&] {
+      return second_words(hn::Sub(hn::Load(kUint, block), hn::Set(kUint, 1)), seed).words[1];
+    };
+    return uniform_lanes(hn::Load(kUint, words[0]), lanes, second);
+  }
+
   /// Component densities that a tentative collision reads.
   static HWY_INLINE uint32_t lookups_per_collision(const Medium& medium) {
     return Tracker::kOneComponent ? 1U : static_cast<uint32_t>(medium.component_count());

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "freepath/transport/walker.h"
 
 namespace freepath {
 namespace {
@@ -37,12 +41,6 @@ double control_share(const Medium& medium, const MediumChannels& channels) {
   return rate > 0 ? control / rate : 0;
 }
 
-}  // namespace
-
-TrackerChoice choose_tracker(const Medium& medium) {
-  return choose_tracker(medium, channels_of(medium));
-}
-
 TrackerChoice choose_tracker(const Medium& medium, const MediumChannels& channels) {
   const double share = control_share(medium, channels);
   const std::string decided =
@@ -60,6 +58,35 @@ TrackerChoice choose_tracker(const Medium& medium, const MediumChannels& channel
   const std::string grey = "channels share one extinction, and " + decided;
   return share >= kWorthwhileControl ? TrackerChoice{"decomposition", grey}
                                      : TrackerChoice{"delta", grey};
+}
+
+constexpr MethodInfo kAutomatic = {
+    "auto", "chooses a tracker from the medium and says which and why",
+    "",     "as the tracker it chooses",
+    "",     {}};
+
+}  // namespace
+
+std::span<const MethodInfo> tracker_choices() {
+  static const std::vector<MethodInfo> kChoices = [] {
+    std::vector<MethodInfo> choices(tracker_infos().begin(), tracker_infos().end());
+    choices.push_back(kAutomatic);
+    return choices;
+  }();
+  return kChoices;
+}
+
+bool is_automatic(std::string_view tracker) { return tracker == kAutomatic.name; }
+
+TrackerChoice settle_tracker(std::string tracker, const Medium& medium) {
+  if (!is_automatic(tracker)) return {std::move(tracker), {}};
+  return choose_tracker(medium, channels_of(medium));
+}
+
+TrackerChoice settle_tracker(std::string tracker, const Medium& medium,
+                             const MediumChannels& channels) {
+  if (!is_automatic(tracker)) return {std::move(tracker), {}};
+  return choose_tracker(medium, channels);
 }
 
 }  // namespace freepath

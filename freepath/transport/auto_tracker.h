@@ -1,26 +1,35 @@
 #pragma once
 /// @file The tracker that `auto` stands for.
 
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "freepath/media/medium.h"
 #include "freepath/media/medium_channels.h"
+#include "freepath/tracking/method.h"
 
 namespace freepath {
 
-inline constexpr std::string_view kAutoTracker = "auto";
+/// What users may name: the trackers, and `auto`, which stands for one of them and is in no
+/// registry.
+std::span<const MethodInfo> tracker_choices();
+
+/// Whether a name stands for the tracker that the medium decides on.
+bool is_automatic(std::string_view tracker);
 
 struct TrackerChoice {
   std::string tracker;
   std::string reason;  ///< One line for users.
 };
 
-/// Chooses a tracker for a medium from whether its extinction differs between channels, from the
-/// share of tentative collisions that a control of super-voxel minima would decide without a
-/// look-up, and from the number of components that a look-up reads.
-TrackerChoice choose_tracker(const Medium& medium);
+/// The tracker that a name stands for in a medium: of `auto` by whether its extinction differs
+/// between channels, by the share of tentative collisions that a control of super-voxel minima
+/// would decide without a look-up, and by the number of components that a look-up reads; of any
+/// other itself, without a reason.
+TrackerChoice settle_tracker(std::string tracker, const Medium& medium);
 /// The same for given cross sections of its components.
-TrackerChoice choose_tracker(const Medium& medium, const MediumChannels& channels);
+TrackerChoice settle_tracker(std::string tracker, const Medium& medium,
+                             const MediumChannels& channels);
 
 }  // namespace freepath

@@ -17,9 +17,16 @@ namespace freepath::HWY_NAMESPACE {
 /// Lengths and inverse directions stay below this, so that no product of theirs is infinite.
 inline constexpr float kHuge = 1e30F;
 
-HWY_INLINE VecF entry_inverse(VecF direction) {
-  const MaskF small = hn::Lt(hn::Abs(direction), set(1.0F / kHuge));
-  return hn::Div(set(1.0F), hn::IfThenElse(small, set(1.0F / kHuge), direction));
+/// A component of a direction, or 0 where it is so small that its inverse would overflow: of
+/// another sign than that inverse it would send rays out of the grid sideways, step by step of no
+/// length.
+HWY_INLINE VecF entry_component(VecF component) {
+  return hn::IfThenZeroElse(hn::Lt(hn::Abs(component), set(1.0F / kHuge)), component);  // NaN stays
+}
+
+HWY_INLINE VecF entry_inverse(VecF component) {
+  const MaskF none = hn::Eq(component, hn::Zero(kFloat));
+  return hn::Div(set(1.0F), hn::IfThenElse(none, set(1.0F / kHuge), component));
 }
 
 /// The entry of a stream of rays into a medium, a chunk at a time, so that what a walk reads of
@@ -94,6 +101,7 @@ HWY_INLINE void MediumEntry::enter_lanes(std::size_t first, std::size_t row) {
       origin[axis] = mul_add(world_origin[from], factor, origin[axis]);
       direction[axis] = mul_add(world_direction[from], factor, direction[axis]);
     }
+    direction[axis] = entry_component(direction[axis]);
     inverse[axis] = entry_inverse(direction[axis]);
     const VecF to_low =
         hn::Mul(hn::Sub(set(medium_.bounds_min[axis]), origin[axis]), inverse[axis]);

@@ -10,6 +10,8 @@
 // foreach_target.h comes next: it includes this file once for each target.
 #include <hwy/highway.h>
 
+#include "freepath/transport/scattering-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
@@ -26,6 +28,7 @@ KernelTable make_table() {
     table.trackers.insert(table.trackers.end(), kernels.begin(), kernels.end());
   }
   table.transmittance = make_transmittance_kernels();
+  table.scattering = make_scattering_kernels();
   return table;
 }
 

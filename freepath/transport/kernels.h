@@ -11,6 +11,7 @@
 #include "freepath/tracking/method.h"
 #include "freepath/tracking/streams.h"
 #include "freepath/tracking/walk_modes.h"
+#include "freepath/transport/scattering_stream.h"
 
 namespace freepath {
 
@@ -54,10 +55,11 @@ struct Kernel {
   bool uniform_emission = false;
 };
 
-/// All methods of one target, in the order of the registry.
+/// All methods of one target, in the order of the registry, and scatterings.
 struct KernelTable {
   std::vector<Kernel> trackers;
   std::vector<Kernel> transmittance;
+  ScatteringKernels scattering;
 };
 
 /// Channels of the smallest compiled walk that carries so many.

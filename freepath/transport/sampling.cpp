@@ -17,14 +17,12 @@ FlightStream walk_once(WalkMember walk, const Walker& walker, const RayStream& r
 }
 
 Walker make_walker(const Medium& medium, WalkSettings settings, int channel) {
-  if (settings.tracker == kAutoTracker) settings.tracker = choose_tracker(medium).tracker;
+  settings.tracker = settle_tracker(settings.tracker, medium).tracker;
   return {medium, settings, channel};
 }
 
 Walker make_walker(const Medium& medium, const MediumChannels& channels, WalkSettings settings) {
-  if (settings.tracker == kAutoTracker) {
-    settings.tracker = choose_tracker(medium, channels).tracker;
-  }
+  settings.tracker = settle_tracker(settings.tracker, medium, channels).tracker;
   return {medium, channels, settings};
 }
 

@@ -47,12 +47,16 @@ class SceneOptionsTest : public ProgramTest {
 
 TEST_F(SceneOptionsTest, ThatWouldChangeNothingAreRefused) {
   expect_refused("--turbidity 3", "give one of them for a scene");
-  expect_refused("--up z", "give one of them for a scene");
-  expect_refused("--camera spherical", "is for volumes");
+  expect_refused("--up z", "give one of their options for a scene");
+  expect_refused("--frames 1-2", "is for volumes");
+  expect_refused("--camera fisheye", "--camera");
+  expect_refused("--look-at 1,2", "--look-at");
+  expect_refused("--fov 0", "angle of view");
   expect_refused("--sigma-a 1 --sigma-a 2", "--sigma-a");
   expect_refused("--g 0.5 --phase rayleigh", "say the same thing twice");
-  for (const char* used : {"--turbidity 3 --sun 20,0", "--up z --ground 0.5",
-                           "--up z --turbidity 3 --environment sky"}) {
+  for (const char* used :
+       {"--turbidity 3 --sun 20,0", "--up z --ground 0.5", "--up z --turbidity 3 --environment sky",
+        "--up z --camera spherical", "--look-at 0.5,0.5,-3 --fov 30"}) {
     EXPECT_EQ(render(used).status, 0) << used;
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "tests/certify/tallies.h"
 #include "tests/statistics.h"
 #include "tests/transport/media_for_tests.h"
 
@@ -25,10 +26,6 @@ constexpr uint64_t kSurelyAnalog = 20;
 /// A mean over paths says nothing unless so many contributions of 1, which is what events too rare
 /// to be seen may be worth, would make up the expectation.
 constexpr double kFewExpected = 100;
-/// The mean of n values is taken for normal far into its tails if their skewness is below the first
-/// times √n, and their kurtosis below the second times n (the next terms of Edgeworth's series).
-constexpr double kLargestSkewness = 0.05;
-constexpr double kLargestKurtosis = 0.01;
 /// Single precision, relative to what is expected: some hundred terms of a sum.
 constexpr double kRounding = 2e-5;
 /// Events of which so many are expected are seen: none comes with a probability of e^-20.
@@ -46,51 +43,6 @@ constexpr double kClearOfRounding = 5 * kRounding;
 constexpr uint32_t kHistoryStream = 0x00012345;
 /// Below it a transmittance is 0 in single precision.
 constexpr double kUnderflow = 1e-45;
-
-/// Power sums of what paths contribute.
-struct Moments {
-  uint64_t count = 0;  ///< Of contributions that are not 0.
-  double sum = 0, squares = 0, cubes = 0, fourths = 0;
-  bool unit = true;  ///< Whether every contribution was 1.
-
-  void add(double value) {
-    if (value == 0) return;
-    ++count;
-    sum += value;
-    squares += value * value;
-    cubes += value * value * value;
-    fourths += value * value * value * value;
-    unit = unit && value == 1;
-  }
-  double variance(double paths) const {
-    return std::max(0.0, squares / paths - sum / paths * (sum / paths));
-  }
-  double skewness(double paths) const {
-    const double spread = variance(paths);
-    const double mean = sum / paths;
-    if (spread <= 1e-10 * mean * mean) return 0;
-    const double third = cubes / paths - 3 * mean * squares / paths + 2 * mean * mean * mean;
-    return third / (spread * std::sqrt(spread));
-  }
-  /// How many paths make their mean normal.
-  double paths_for_normal_mean(double paths) const {
-    const double spread = variance(paths);
-    const double mean = sum / paths;
-    if (spread <= 1e-10 * mean * mean) return 0;
-    const double fourth = fourths / paths - 4 * mean * cubes / paths +
-                          6 * mean * mean * squares / paths - 3 * std::pow(mean, 4);
-    const double kurtosis = fourth / (spread * spread);
-    return std::max(std::pow(skewness(paths) / kLargestSkewness, 2), kurtosis / kLargestKurtosis);
-  }
-};
-
-/// What is gathered of one channel.
-struct ChannelTally {
-  std::vector<double> edges;  ///< Of the bins [world].
-  Moments radiance;
-  Moments escaped;
-  std::vector<Moments> bins;
-};
 
 struct Exact {
   double radiance = 0;
@@ -148,7 +100,7 @@ class Measurement {
     double variance = 0;
     double third = 0;
     for (int channel = 0; channel < channel_count(); ++channel) exact += exact_[channel].radiance;
-    for (const Moments& moments : together_) {
+    for (const PowerSums& moments : together_) {
       const double spread = moments.variance(paths);
       sum += moments.sum / paths;
       variance += spread;
@@ -215,7 +167,7 @@ class Measurement {
     double wanted = 0;
     for (int channel = 0; channel < channel_count(); ++channel) {
       const auto n = static_cast<double>(pilot_paths);
-      const Moments& pilot = tallies_[channel].radiance;
+      const PowerSums& pilot = tallies_[channel].radiance;
       const double error = budget_.relative_error * std::max(1e-3, exact_[channel].radiance);
       wanted =
           std::max({wanted, pilot.variance(n) / (error * error), pilot.paths_for_normal_mean(n),
@@ -319,7 +271,7 @@ class Measurement {
     return seen;
   }
 
-  Check compare_mean(std::string quantity, const Moments& moments, double paths,
+  Check compare_mean(std::string quantity, const PowerSums& moments, double paths,
                      double exact) const {
     Check check{.quantity = std::move(quantity), .exact = exact};
     check.estimate = moments.sum / paths;
@@ -357,7 +309,7 @@ class Measurement {
   /// adds to one bin at most, so C = D - µµᵀ with D the mean squared weights, inverted by Sherman
   /// and Morrison's formula. With weights of 1 it is Pearson's test.
   Check compare_distribution(int channel, double paths) const {
-    const std::vector<Moments>& bins = tallies_[channel].bins;
+    const std::vector<PowerSums>& bins = tallies_[channel].bins;
     Check check{.quantity = "free path"};
     double distance = 0;
     double across = 0;
@@ -395,7 +347,7 @@ class Measurement {
   /// Of what paths contribute to a bin, in proportion to the exact mean: of fewer contributions
   /// than expected the squares are too small by as much as the sum. Unless the sum is lost in its
   /// noise.
-  static double mean_square(const Moments& bin, double expected, double paths) {
+  static double mean_square(const PowerSums& bin, double expected, double paths) {
     const double mean = bin.sum / paths;
     const bool clear = mean > 5 * std::sqrt(bin.variance(paths) / paths);
     return clear ? bin.squares / bin.sum * expected : bin.squares / paths;
@@ -431,7 +383,7 @@ class Measurement {
   bool shared_;
   uint64_t most_paths_ = 0;
   std::array<ChannelTally, kMaxChannels> tallies_;
-  std::vector<Moments> together_;  ///< Of the channels of a path; one for each walker.
+  std::vector<PowerSums> together_;  ///< Of the channels of a path; one for each walker.
   std::array<Exact, kMaxChannels> exact_;
 };
 

@@ -1,9 +1,13 @@
 #include "freepath/io/image.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -215,12 +219,12 @@ TEST_F(ImageTest, AttributesOfAnExrHaveTheSizesOfTheirTypes) {
     change_behind(path("a.exr"), text, bytes);
     expect_message([&] { read_image(path("a.exr")); }, "a.exr: the attribute " + message);
   };
-  expect_damaged("note\0string\0"sv, "\x74\x72\x75\x65"sv,
+  expect_damaged("note\0string\0"sv, "true"sv,
                  "note in its header is said to take 1702195828 bytes, but ");
   expect_damaged("note\0string\0"sv, "\xFF\xFF\xFF\xFF"sv,
                  "note in its header is said to take 4294967295 bytes, but ");
   expect_damaged("dataWindow\0box2i\0"sv, "\x0F"sv, "dataWindow in its header is no box2i of 15 ");
-  expect_damaged("channels\0chlist\0"sv, "\x36"sv, "channels in its header is no chlist of 54 ");
+  expect_damaged("channels\0chlist\0"sv, "6"sv, "channels in its header is no chlist of 54 ");
   // What has other types is taken for what it says: two texts, and a picture of 1000 x 1000.
   expect_damaged("note\0"sv, "stringvector\0\x04\0\0\0\xFF\xFF\xFF\x7F"sv,
                  "note in its header is no stringvector of 4 ");
@@ -233,10 +237,88 @@ TEST_F(ImageTest, ManyRowsArriveInTheirPlaces) {
   Image image{.width = 3000, .height = 700, .channels = {"Y"}};
   image.values.resize(image.pixel_count());
   for (std::size_t i = 0; i < image.values.size(); ++i) {
-    image.values[i] = static_cast<float>(i / 3000 * 1000 + i % 7);
+    const std::size_t row = i / 3000;
+    image.values[i] = static_cast<float>(row * 1000 + i % 7);
   }
   write_exr(path("a.exr"), image);
   EXPECT_EQ(read_image(path("a.exr")).values, image.values);
+}
+
+/// No memory beyond what is taken now and some more, while this lives.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(std::size_t bytes) {
+    getrlimit(RLIMIT_AS, &before_);
+    std::size_t pages = 0;  // the first number of the file
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlimit limit{pages * sysconf(_SC_PAGESIZE) + bytes, before_.rlim_max};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+// For one row of so many OpenImageIO would take a gigabyte, as for 256 of them. (OpenEXR takes
+// memory for each thread, so that a limit would depend on the machine.)
+TEST_F(ImageTest, AWideImageTakesItsOwnMemoryAlone) {
+  constexpr int kWidth = 1 << 19;
+  std::string pixels;
+  for (int i = 0; i < kWidth; ++i) pixels += {char(-128), char(i % 100 + 20), 64, char(-127)};
+  std::ofstream(path("a.hdr"), std::ios::binary)
+      << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X " << kWidth << "\n"
+      << pixels;
+  const std::vector<float> values = read_image(path("a.hdr")).values;  // which starts all threads
+  ASSERT_EQ(values.size(), 3U * kWidth);
+  EXPECT_NEAR(values[3 * 57], 1, 0.01);
+  EXPECT_NEAR(values[3 * 57 + 1], 77.0 / 128, 0.01);
+  const MemoryLimit limit(std::size_t{256} << 20);
+  EXPECT_EQ(read_image(path("a.hdr")).values, values);
+}
+
+// OpenEXR takes memory for rows that are packed together before anyone can ask how many there are.
+TEST_F(ImageTest, AnExrCostsNoMoreThanItDelivers) {
+  write_exr(path("a.exr"), numbered_image({"R", "G", "B", "A"}));
+  std::ifstream file(path("a.exr"), std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  const std::string head("dataWindow\0box2i\0\x10\0\0\0", 21);
+  const std::size_t window = whole.find(head) + head.size();
+  ASSERT_LT(window, whole.size());
+  const auto message_for = [&](int32_t x_max, int32_t y_max) {
+    std::string changed = whole;
+    const int32_t box[] = {0, 0, x_max, y_max};
+    std::memcpy(changed.data() + window, box, sizeof(box));
+    std::ofstream(path("b.exr"), std::ios::binary) << changed;
+    const MemoryLimit limit(std::size_t{256} << 20);
+    return message_of([&] { read_image(path("b.exr")); });
+  };
+  EXPECT_NE(message_for(6'894'083, 4096).find("6894084x4097 pixels"), std::string::npos);
+  EXPECT_NE(message_for(1'500'000, 0).find("packed in parts"), std::string::npos);
+  EXPECT_EQ(message_of([&] { read_image(path("a.exr")); }), "no error");
+}
+
+// However few bytes are missing: what is written last is, too.
+TEST_F(ImageTest, AnExrThatDoesNotFitTheDiskIsAnError) {
+  // The last row is packed alone, and so short that it waits for the stream's end.
+  Image image{.width = 60, .height = 33, .channels = {"R", "G", "B"}};
+  for (int i = 0; i < 60 * 33 * 3; ++i) image.values.push_back(std::sin(static_cast<float>(i)));
+  write_exr(path("a.exr"), image);
+  const std::size_t size = fs::file_size(path("a.exr"));
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const std::size_t missing : {std::size_t{1}, std::size_t{3000}, size - 600}) {
+    const rlimit small{size - missing, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = message_of([&] { write_exr(path("b.exr"), image); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_NE(message.find("b.exr"), std::string::npos) << missing << ": " << message;
+    EXPECT_FALSE(fs::exists(path("b.exr")));
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 TEST_F(ImageTest, InvalidPixelsBecomeZeroOrAreRefused) {

@@ -139,6 +139,36 @@ TEST(Layers, OfTheMiddleOfACubeAreThoseOfTheClosedForm) {
   }
 }
 
+// In a medium that takes colours apart, a path of all channels has its first event where one of
+// them may rarely have it: depths are means over events with their weights.
+TEST(Layers, DepthsCountByTheWeightsOfTheirEvents) {
+  constexpr double kLength = 2;
+  const Spectrum sigma_s(6, 1, 0.3F);
+  double events = 0;
+  double ways = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    const double sigma = sigma_s[c] + 0.3;
+    const double passed = std::exp(-sigma * kLength);
+    events += 1 - passed;
+    ways += (1 - passed) / sigma - kLength * passed;
+  }
+  RenderSettings settings = sampled(8192);
+  settings.walk.tracker = "spectral:collision-probability=history-max";
+  OrthographicCamera straight;
+  straight.screen_window = {-0.5, 0.5, -0.5, 0.5};
+  const View view{Vec3d(0, 0, 3), Vec3d(0), Vec3d(0, 1, 0)};
+  const Camera camera(straight, world_from_camera(view), 4, 4);
+  for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
+    settings.walk.absorption = absorption;
+    const Image image =
+        render(glowing_cube(sigma_s), camera, environment(), settings).film.to_image();
+    double depth = 0;
+    for (std::size_t i = 0; i < 16; ++i) depth += value(image, "depth.Z", i) / 16;
+    constexpr double kToFace = 3 - 0.9375;
+    EXPECT_NEAR(depth, kToFace + ways / events, 0.005);
+  }
+}
+
 TEST(Layers, ChangeNothingOfThePicture) {
   const Medium medium = glowing_cube(Spectrum(1.5F, 0.7F, 0.2F));
   RenderSettings settings = sampled(3);

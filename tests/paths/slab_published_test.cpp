@@ -42,7 +42,7 @@ SlabSettings settings_of(const Problem& problem, uint64_t seed) {
 ::testing::AssertionResult check_problem(const Problem& problem, const SlabSettings& settings) {
   const SlabResult result = trace_slab(problem.layers, settings);
   for (const Answer& answer : problem.answers) {
-    const SlabEstimate& estimate = value_of(result, answer.quantity);
+    const Estimate& estimate = value_of(result, answer.quantity);
     const auto checked = check_mean(problem.name, estimate.mean, estimate.error, result.paths,
                                     answer.value, {threshold(), 0, answer.largest_relative_error});
     if (!checked) return checked;

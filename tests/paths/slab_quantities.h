@@ -19,7 +19,7 @@ inline double threshold() { return std::min(4.0, family_wise_threshold(kFamilyLe
 
 enum class Quantity { kReflectance, kTransmittance, kUnscattered };
 
-inline const SlabEstimate& value_of(const SlabResult& result, Quantity quantity) {
+inline const Estimate& value_of(const SlabResult& result, Quantity quantity) {
   switch (quantity) {
     case Quantity::kTransmittance:
       return result.transmittance;

@@ -63,8 +63,8 @@ TEST(Slab, ALayerCutInTwoStaysTheSame) {
   const SlabResult cut =
       trace_slab(std::vector<SlabLayer>{{0.2, 0.9, 0.6}, {1.3, 0.9, 0.6}}, settings);
   for (const Quantity quantity : {Quantity::kReflectance, Quantity::kTransmittance}) {
-    const SlabEstimate& a = value_of(whole, quantity);
-    const SlabEstimate& b = value_of(cut, quantity);
+    const Estimate& a = value_of(whole, quantity);
+    const Estimate& b = value_of(cut, quantity);
     EXPECT_TRUE(check_mean("difference", a.mean - b.mean, std::hypot(a.error, b.error),
                            settings.paths, 0, {threshold(), 0}));
   }
@@ -135,7 +135,7 @@ TEST(Slab, LayersOfDifferentKindsAgreeWithAnIndependentCalculation) {
     settings.paths = 2'000'000;
     settings.walk.tracker = stack.tracker;
     const SlabResult result = trace_slab(stack.layers, settings);
-    const auto check = [&](const SlabEstimate& estimate, const RunningStatistics& expected) {
+    const auto check = [&](const Estimate& estimate, const RunningStatistics& expected) {
       EXPECT_LT(estimate.error, 0.006 * estimate.mean);
       EXPECT_TRUE(check_mean(stack.tracker, estimate.mean - expected.mean(),
                              std::hypot(estimate.error, expected.standard_error()), settings.paths,

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "freepath/base/random.h"
-#include "freepath/io/image_codec.h"
+#include "freepath/io/image_encode.h"
 
 namespace freepath::testing {
 
@@ -164,7 +164,7 @@ Chart sample_histogram() {
 
 PngBytes encode_png(int width, int height, const std::vector<uint8_t>& pixels) {
   PngBytes bytes;
-  const std::string reason = image_codec().encode_png(width, height, pixels.data(), bytes);
+  const std::string reason = encode_png_pixels(width, height, pixels.data(), bytes);
   if (!reason.empty()) throw std::runtime_error(reason);
   return bytes;
 }

@@ -111,6 +111,8 @@ inline std::string film(int size = 16) {
          R"( "integer yresolution" )" + std::to_string(size) + "\nPixelFilter \"box\"\n";
 }
 
+inline const std::string kWhiteSky = "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n";
+
 /// As many scatterings as it takes.
 inline const std::string kUnlimited = "Integrator \"volpath\" \"integer maxdepth\" 100000\n";
 

@@ -18,7 +18,6 @@ namespace freepath::testing {
 namespace {
 
 const std::string kBlack = "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] ";
-const std::string kWhiteSky = "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n";
 /// Squares of the unit square of (u, v); the part of 1 is where u and v are both below or above.
 const std::string kHoles =
     "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 4 "

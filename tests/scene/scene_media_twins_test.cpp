@@ -123,6 +123,25 @@ bool needs_no_boundary(const std::string& world) {
   return built.scene.is_clear[0];
 }
 
+// Media of grids end at the faces of their voxels, where most scenes have their boundary.
+TEST(SceneTwins, BoundaryOnTheFacesOfVoxelsNeedNotBeTraced) {
+  const std::string colors =
+      R"(MakeNamedMedium "m" "string type" "rgbgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1 )"
+      R"("point3 p0" [ -1.2 -1 -1.4 ] "point3 p1" [ 1.2 1 1.4 ] )"
+      R"("rgb sigma_s" [ .5 .3 .2 .3 .4 .6 ] "rgb sigma_a" [ .1 .2 .3 .1 .2 .3 ])"
+      "\n";
+  for (const std::string& grid : {lumpy_grid(), colors}) {
+    for (const char* const turn : {"", "Rotate 90 0 0 1 Translate .1 .2 .3 Scale .7 .8 .9\n"}) {
+      const std::string on = turn + grid + medium_box("m", kTwinLow, -kTwinLow);
+      const std::string within =
+          turn + grid + medium_box("m", kTwinLow * (1 - 1e-5), -kTwinLow * (1 - 1e-5));
+      EXPECT_TRUE(needs_no_boundary(on));
+      EXPECT_FALSE(needs_no_boundary(within));
+      expect_twins("faces", stage(on), stage(within));
+    }
+  }
+}
+
 // A boundary that is a box need not be traced, since the fog ends there by itself.
 TEST(SceneTwins, FogFillsABoxAsWithinABoundary) {
   const std::string one = fog_boundary({kEightTriangles + kFourTriangles});

@@ -141,6 +141,23 @@ TEST(VolumeCamera, AnOrthographicOneKeepsSizes) {
   }
 }
 
+// Over its edges the way through a cube goes down to 0: seen at an angle of 45 degrees it is
+// 2 (√2 - |x|) long, whose exponential has a mean over the picture in closed form.
+TEST(VolumeCamera, SeesTheEdgesOfAMedium) {
+  constexpr double kHalfWidth = 1.5;
+  constexpr double kHalfDiagonal = std::numbers::sqrt2;
+  OrthographicCamera around;
+  around.screen_window = {-kHalfWidth, kHalfWidth, -0.5, 0.5};
+  const View view{Vec3d(9, 0, 9), Vec3d(0)};
+  const Camera camera(around, world_from_camera(view), kSize, kSize);
+  const PathScene scene =
+      make_volume_scene(cube(Spectrum(1.0F), Spectrum(0.0F)), camera, {Spectrum(1.0F)});
+  const double beside = 2 * (kHalfWidth - kHalfDiagonal);
+  const double expected = (beside + 1 - std::exp(-2 * kHalfDiagonal)) / (2 * kHalfWidth);
+  expect_mean("cube", render_volume(scene, ColorMode::kRgb, 1024), {expected, expected, expected},
+              {.absolute = 2e-5, .largest_relative_error = 3e-3});
+}
+
 // Between voxels linearly, a cube fades over half a voxel beyond its faces, and is seen there.
 TEST(VolumeCamera, SeesAMediumAsFarAsItsFilterReaches) {
   constexpr double kHalfVoxel = 0.0625;

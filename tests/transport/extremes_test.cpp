@@ -154,6 +154,10 @@ TEST(Extremes, RaysAlongFacesAndEdgesSeeTheirTransmittance) {
   const TestRay rays[] = {{Vec3f(-20, -0.5F, 3.5F), Vec3f(1, 0, 0), 40},
                           {Vec3f(-0.5F, 20, 3.5F), Vec3f(0, -1, 0), 40},
                           {Vec3f(3.5F, 1.2F, -20), Vec3f(0, 0, 1), 40},
+                          // As sines and cosines leave them.
+                          {Vec3f(0.3F, 20, 3.7F), Vec3f(6e-17F, -1, -1.1e-32F), 40},
+                          {Vec3f(0.3F, -20, 3.7F), Vec3f(-1e-31F, 1, -1e-38F), 40},
+                          {Vec3f(-20, 0.7F, 1.2F), Vec3f(1, -0.0F, -1e-40F), 40},
                           {Vec3f(-20.5F, -20.5F, 3.5F), Vec3f(1, 1, 0).normalized(), 60},
                           {Vec3f(-20.5F), Vec3f(1).normalized(), 80}};
   constexpr std::size_t kPaths = 30'000;

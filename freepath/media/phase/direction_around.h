@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "freepath/base/tangent_frame.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -16,9 +16,9 @@ namespace freepath {
 inline Vec3f direction_around(const Vec3f& axis, double h, float u2) {
   const auto sine = static_cast<float>(2.0 * std::sqrt(std::max(0.0, h * (1.0 - h))));
   const auto cosine = static_cast<float>(1.0 - 2.0 * h);
-  const float azimuth = 2.0F * std::numbers::pi_v<float> * u2;
+  const SinCos azimuth = sincos_of_turn(u2);
   const Vec3f after =
-      TangentFrame(axis).to_world(sine * std::cos(azimuth), sine * std::sin(azimuth), cosine);
+      TangentFrame(axis).to_world(sine * azimuth.cosine, sine * azimuth.sine, cosine);
   // Normalised, so that rounding doesn't build up over thousands of events.
   return after * (1.0F / std::sqrt(after.length2()));
 }

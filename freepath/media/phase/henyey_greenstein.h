@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "freepath/base/tangent_frame.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -25,7 +26,8 @@ struct PhaseSample {
 ///
 /// Evaluated through the distance from the peak, which is 1 - cosine for g > 0, because the
 /// denominator as written cancels at the peak: with s = |g|,
-/// 1 + g² - 2 g cosine = (1 - s)² + 2 s (1 ∓ cosine).
+/// 1 + g² - 2 g cosine = (1 - s)² + 2 s (1 ∓ cosine). The lanes do the same in the same order
+/// (henyey_greenstein-inl.h).
 class HenyeyGreenstein {
  public:
   /// @param g mean cosine, |g| < 1; whoever takes it from a user checks it
@@ -57,10 +59,9 @@ class HenyeyGreenstein {
     const float ratio = gap_ / (gap_ + 2.0F * s * (1.0F - u1));  // 1 + s - 2 s u
     const float h = std::min(1.0F, ratio * ratio * u1 * (1.0F + s * (1.0F - u1)));
     const float sine = 2.0F * std::sqrt(h * (1.0F - h));
-    const float azimuth = 2.0F * std::numbers::pi_v<float> * u2;
+    const SinCos azimuth = sincos_of_turn(u2);
     const TangentFrame frame(before * sign_);
-    const Vec3f after =
-        frame.to_world(sine * std::cos(azimuth), sine * std::sin(azimuth), 1.0F - 2.0F * h);
+    const Vec3f after = frame.to_world(sine * azimuth.cosine, sine * azimuth.sine, 1.0F - 2.0F * h);
     // Normalised, so that rounding doesn't build up over thousands of events.
     return {after * (1.0F / std::sqrt(after.length2())), evaluate_at(4.0F * h)};
   }

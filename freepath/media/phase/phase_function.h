@@ -74,6 +74,11 @@ class PhaseFunction {
   /// Mean of the cosine between the directions before and after.
   float mean_cosine() const;
 
+  /// The function itself, if it is this one; else null.
+  const HenyeyGreenstein* as_henyey_greenstein() const {
+    return std::get_if<HenyeyGreenstein>(&function_);
+  }
+
  private:
   using Function =
       std::variant<HenyeyGreenstein, Rayleigh, Draine, Droplets, TabulatedPhase, PhaseMixture>;

@@ -220,7 +220,7 @@ void read_sampler(BuildContext& context, PictureSettings& picture) {
 std::string method_name(const ParameterList& list, std::string_view name,
                         std::span<const MethodInfo> known) {
   std::string text = list.get_string(name, "");
-  if (!text.empty() && text != kAutoTracker) {
+  if (!text.empty()) {
     at_location(list.location_of(name), [&] { return parse_method(text, known); });
   }
   return text;
@@ -253,7 +253,7 @@ void read_integrator(BuildContext& context, PictureSettings& picture) {
     context.diagnostics.warn(list.location_of("regularize"),
                              "'regularize' is left out: it would bias the picture");
   }
-  picture.tracker = method_name(list, "tracker", tracker_infos());
+  picture.tracker = method_name(list, "tracker", tracker_choices());
   picture.transmittance = method_name(list, "transmittance", transmittance_infos());
   picture.interpolation = read_interpolation(list);
   pass_over(list, {"lightsampler"});

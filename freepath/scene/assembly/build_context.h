@@ -11,9 +11,11 @@
 
 #include "freepath/io/invalid_values.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/scene/assembly/camera_change.h"
 #include "freepath/scene/ground.h"
 #include "freepath/scene/pbrt/diagnostics.h"
 #include "freepath/scene/pbrt/scene.h"
+#include "freepath/scene/periodic_sides.h"
 #include "freepath/scene/surroundings.h"
 #include "freepath/spectra/spectrum_table.h"
 
@@ -33,6 +35,8 @@ struct BuildOptions {
   /// An environment replaces the scene's lights from everywhere around; the sun is added.
   Surroundings surroundings = {};
   std::optional<Ground> ground = {};  ///< Is added.
+  PeriodicSides sides = {};           ///< Along which it repeats.
+  std::optional<CameraChange> camera = {};
   /// Of media whose statements say nothing of it [1/m per density].
   std::optional<Spectrum> sigma_a = {}, sigma_s = {};
   std::optional<PhaseFunction> phase = {};

@@ -16,6 +16,7 @@
 #include "freepath/lights/photometry.h"
 #include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/scene/assembly/cloud_density.h"
+#include "freepath/scene/assembly/grid_voxels.h"
 #include "freepath/scene/assembly/scattering_presets.h"
 
 namespace freepath {
@@ -186,72 +187,12 @@ class MediumReader {
     return smallest;
   }
 
-  struct Layout {
-    Vec3i counts;
-    Matrix4d index_to_world;
-    std::size_t voxels() const { return std::size_t(counts.x) * counts.y * counts.z; }
-  };
-
-  Layout layout() {
-    Layout layout;
-    const std::string_view names[3] = {"nx", "ny", "nz"};
-    double product = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      layout.counts[axis] = list_.get_integer(names[axis], 1);
-      if (layout.counts[axis] < 1) {
-        fail_at(list_.location_of(names[axis]), "'{}' is {}: a grid has at least 1 voxel along it",
-                names[axis], layout.counts[axis]);
-      }
-      product *= layout.counts[axis];
-    }
-    if (product > 1e9) fail("the grid has {:.3g} voxels, more than 1e9", product);
-    const Vec3d p0 = list_.get_point("p0", Vec3d(0));
-    const Vec3d p1 = list_.get_point("p1", Vec3d(1));
-    Matrix4d index_to_medium;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double edge = (p1[axis] - p0[axis]) / layout.counts[axis];
-      if (edge == 0) {
-        fail_at(list_.location_of("p1"), "'p0' and 'p1' are the same along {}", "xyz"[axis]);
-      }
-      index_to_medium[axis][axis] = edge;
-      index_to_medium[3][axis] = p0[axis] + 0.5 * edge;
-    }
-    layout.index_to_world = index_to_medium * to_world();
-    return layout;
-  }
-
-  void check_count(std::string_view name, std::size_t count, std::size_t expected) const {
-    if (count == expected) return;
-    fail_at(list_.location_of(name), "'{}' has {}, but nx · ny · nz is {}", name,
-            counted(count, "value"), expected);
-  }
-
-  std::shared_ptr<const Field> voxels(const Layout& layout, std::string_view name) {
-    const std::span<const double> values = list_.get_floats(name);
-    if (values.empty()) fail("a grid needs '{}', a number for each voxel", name);
-    check_count(name, values.size(), layout.voxels());
-    BrickMapBuilder builder(Vec3i(0), layout.counts - Vec3i(1), 0);
-    std::size_t i = 0;
-    for (int z = 0; z < layout.counts.z; ++z) {
-      for (int y = 0; y < layout.counts.y; ++y) {
-        for (int x = 0; x < layout.counts.x; ++x, ++i) {
-          if (values[i] < 0) {
-            fail_at(list_.location_of(name), "'{}' is {} in voxel ({}, {}, {})", name, values[i], x,
-                    y, z);
-          }
-          builder.set_voxel(Vec3i(x, y, z), static_cast<float>(values[i]));
-        }
-      }
-    }
-    auto field = std::make_shared<Field>();
-    field->name = medium_.name + "." + std::string(name);
-    field->voxels = std::move(builder).finish();
-    field->index_to_world = layout.index_to_world;
-    return field;
+  std::shared_ptr<const Field> voxels(const VoxelLayout& layout, std::string_view name) {
+    return read_voxels(list_, layout, name, medium_.name + "." + std::string(name));
   }
 
   SceneMedium uniform_grid() {
-    const Layout layout = this->layout();
+    const VoxelLayout layout = read_voxel_layout(list_, to_world());
     SceneMediumComponent component;
     read_coefficients(component);
     component.phase = phase();
@@ -273,11 +214,11 @@ class MediumReader {
     return {medium_.name, medium_of(density, component, true), {component}};
   }
 
-  std::vector<RgbSpectrum> colors(const Layout& layout, std::string_view name,
+  std::vector<RgbSpectrum> colors(const VoxelLayout& layout, std::string_view name,
                                   ColorMeaning meaning) {
     if (!list_.type_of(name)) return {};
     const std::vector<SpectrumValue> values = list_.get_spectra(name);
-    check_count(name, values.size(), layout.voxels());
+    check_voxel_count(list_, name, values.size(), layout);
     const RgbColorSpace& black = rgb_color_space("srgb");
     std::vector<RgbSpectrum> spectra(values.size(), RgbSpectrum::unbounded(Vec3d(0), black));
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -299,7 +240,7 @@ class MediumReader {
   }
 
   SceneMedium color_grid() {
-    const Layout layout = this->layout();
+    const VoxelLayout layout = read_voxel_layout(list_, to_world());
     auto grid = std::make_shared<ColorVoxels>();
     grid->super_voxel = context_.options.super_voxel;
     grid->counts = layout.counts;

@@ -11,6 +11,7 @@
 #include "freepath/base/nearest_name.h"
 #include "freepath/geometry/loop_subdivision.h"
 #include "freepath/geometry/ply_file.h"
+#include "freepath/geometry/surfaces.h"
 #include "freepath/scene/assembly/build_inputs.h"
 #include "freepath/scene/assembly/build_lights.h"
 #include "freepath/scene/assembly/build_media.h"
@@ -171,6 +172,21 @@ std::vector<AreaLight> build_area_lights(const BuiltShapes& shapes, const Vec3d&
                       emitter.emission, false, emitter.is_invisible});
   }
   return lights;
+}
+
+Box3d extent_of(const SurfaceScene& surfaces) {
+  if (surfaces.shapes.empty() && surfaces.instances.empty()) return {};
+  const auto around = [&](const Vec3d& origin) {
+    const Box3f bounds = Surfaces(surfaces, origin).bounds();
+    if (bounds.isEmpty()) return Box3d();
+    return Box3d(Vec3d(bounds.min) + origin, Vec3d(bounds.max) + origin);
+  };
+  const Box3d extent = around(Vec3d(0));
+  if (extent.isEmpty()) return extent;
+  // Far from the origin floats are coarse.
+  constexpr double kFar = 16;  // sizes
+  const Vec3d center = extent.center();
+  return center.length() > kFar * extent.size().length() ? around(center) : extent;
 }
 
 }  // namespace freepath

@@ -23,8 +23,6 @@ struct BuiltShapes {
     bool is_invisible = false;
   };
   std::vector<Emitter> emitters;
-
-  bool empty() const { return surfaces.shapes.empty() && surfaces.instances.empty(); }
 };
 
 /// Reads all shapes. Media have to be named, materials to be built.
@@ -34,5 +32,9 @@ BuiltShapes build_shapes(BuildContext& context);
 /// The area lights of shapes.
 /// @param origin of the rays [world]
 std::vector<AreaLight> build_area_lights(const BuiltShapes& shapes, const Vec3d& origin);
+
+/// Bounds of all shapes [world]; empty without any.
+/// @throws Error as Surfaces
+Box3d extent_of(const SurfaceScene& surfaces);
 
 }  // namespace freepath

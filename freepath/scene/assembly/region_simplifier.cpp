@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,19 +13,23 @@
 namespace freepath {
 namespace {
 
-/// The part of the world that a medium's densities reach.
-Box3d reach_of(const SceneMedium& medium) {
-  Box3d box = medium.bounds();
-  if (!medium.medium() || medium.is_homogeneous()) return box;  // clipped at its bounds
-  // Half a voxel more where voxels fade; what that is in the world, the transform knows.
-  const Component& component = medium.medium()->components()[0];
-  Vec3d half(0);
+/// The part of a medium that a boundary has to lie outside of: all but what rounding of places may
+/// take of it.
+/// @param origin that these are relative to
+Box3d core_of(const Box3d& reach, const Vec3d& origin) {
+  constexpr double kRounding = 4 * double{std::numeric_limits<float>::epsilon()};
+  double farthest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    for (int from = 0; from < 3; ++from) {
-      half[axis] += 0.5 * std::abs(component.density->index_to_world[from][axis]);
-    }
+    farthest = std::max({farthest, std::abs(reach.min[axis] - origin[axis]),
+                         std::abs(reach.max[axis] - origin[axis])});
   }
-  return {box.min - half, box.max + half};
+  Box3d core = reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double rounding = std::min(kRounding * farthest, reach.size()[axis] / 4);
+    core.min[axis] += rounding;
+    core.max[axis] -= rounding;
+  }
+  return core;
 }
 
 /// The corner of a box that a place is, a bit for each axis; nothing if it is none.
@@ -109,7 +115,8 @@ MediaSet media_at(const Surfaces& surfaces, const std::vector<PathShape>& shapes
 
 class Simplifier {
  public:
-  Simplifier(SurfaceScene& surfaces, PathScene& scene) : surfaces_(surfaces), scene_(scene) {
+  Simplifier(SurfaceScene& surfaces, PathScene& scene, const Vec3d& stood)
+      : surfaces_(surfaces), scene_(scene), stood_(stood - scene.origin) {
     for (uint32_t shape = 0; shape < scene.shapes.size(); ++shape) all_.push_back(shape);
   }
 
@@ -123,8 +130,12 @@ class Simplifier {
       std::vector<uint32_t> boundary;
       if (!find_boundary(id, boundary)) continue;
       const std::optional<SceneMedium> filling = filling_of(id, boundary);
-      const Box3d reach = reach_of(filling ? *filling : scene_.media[id]);
-      if (traced.intersects_box(filling ? all_but(boundary[0]) : all_, reach)) continue;
+      const Box3d reach = (filling ? *filling : scene_.media[id]).outer_bounds();
+      // Boundaries may lie on the faces where the medium ends by itself.
+      const Box3d core = core_of(reach, scene_.origin);
+      const std::vector<uint32_t> others = all_but(boundary);
+      if (traced.intersects_box(boundaries_among(others), core)) continue;
+      if (!filling && traced.intersects_box(boundary, core)) continue;
       const Vec3f center(reach.center() - scene_.origin);
       const bool is_around = scene_.camera_media.count(id) > 0;
       if (boundary.empty() ? !is_around : !traced.is_inside(center, boundary)) continue;
@@ -135,6 +146,7 @@ class Simplifier {
       if (!boundary.empty() && inside.count(id) == 0) continue;
       if (filling) scene_.media[id] = *filling;
       dissolve(id);
+      scene_.is_clear[id] = !traced.intersects_box(others, reach);
       return;
     }
   }
@@ -142,14 +154,18 @@ class Simplifier {
  private:
   /// To the camera's own medium, which need not have a boundary.
   void add_media_around_camera(const Surfaces& traced) {
-    const float x = 0.5F * static_cast<float>(scene_.camera->width());
-    const float y = 0.5F * static_cast<float>(scene_.camera->height());
-    const Vec3f eye(scene_.camera->ray(x, y, 0.5F, 0.5F).origin - scene_.origin);
-    const MediaSet around = media_at(traced, scene_.shapes, scene_.media.size(), eye);
+    const MediaSet around = media_at(traced, scene_.shapes, scene_.media.size(), stood_);
     for (const MediaSet::Entry& entry : around.entries()) {
       scene_.camera_media.add(
           entry.medium,
           entry.count - std::min(entry.count, scene_.camera_media.count(entry.medium)));
+    }
+    // On its way to where it stands now it crosses boundaries as any ray does.
+    const Vec3f way = Vec3f(scene_.camera->place() - scene_.origin) - stood_;
+    if (way == Vec3f(0)) return;
+    for (const BoundaryCrossing& crossing : traced.all_crossings(stood_, way)) {
+      if (crossing.place.t >= 1) break;
+      scene_.shapes[crossing.shape].cross(scene_.camera_media, crossing.enters);
     }
   }
 
@@ -197,10 +213,18 @@ class Simplifier {
     return medium.in_box(*box, only->object_to_world);
   }
 
-  std::vector<uint32_t> all_but(uint32_t shape) const {
-    std::vector<uint32_t> others = all_;
-    std::erase(others, shape);
+  std::vector<uint32_t> all_but(std::span<const uint32_t> shapes) const {
+    std::vector<uint32_t> others;
+    std::set_difference(all_.begin(), all_.end(), shapes.begin(), shapes.end(),
+                        std::back_inserter(others));
     return others;
+  }
+
+  std::vector<uint32_t> boundaries_among(std::vector<uint32_t> shapes) const {
+    std::erase_if(shapes, [&](uint32_t shape) {
+      return scene_.shapes[shape].inside == scene_.shapes[shape].outside;
+    });
+    return shapes;
   }
 
   /// Vacuum becomes the medium, and boundaries between both go.
@@ -217,18 +241,18 @@ class Simplifier {
       return shape.is_boundary && sides.inside == id && sides.outside == id;
     };
     std::erase_if(surfaces_.shapes, is_useless);
-    scene_.is_clear[id] = true;
   }
 
   SurfaceScene& surfaces_;
   PathScene& scene_;
+  Vec3f stood_;  // the camera that the file describes
   std::vector<uint32_t> all_;
 };
 
 }  // namespace
 
-void simplify_regions(SurfaceScene surfaces, PathScene& scene) {
-  Simplifier(surfaces, scene).run();
+void simplify_regions(SurfaceScene surfaces, PathScene& scene, const Vec3d& stood) {
+  Simplifier(surfaces, scene, stood).run();
   if (surfaces.shapes.empty() && surfaces.instances.empty()) return;
   scene.surfaces.emplace(surfaces, scene.origin);
 }

@@ -6,12 +6,14 @@
 
 namespace freepath {
 
-/// Makes PathScene::surfaces of its shapes, and PathScene::is_clear.
+/// Makes PathScene::surfaces of its shapes, and PathScene::is_clear, and completes camera_media.
 ///
 /// A medium of voxels ends where its voxels do. Where its boundary lies wholly outside of them,
-/// with vacuum beyond and no other surface within, the boundary is of no use: it is left out, and
+/// with vacuum beyond and no other boundary within, the boundary is of no use: it is left out, and
 /// the medium fills the vacuum too. So it is with a homogeneous medium whose boundary is a box,
 /// which it then fills by itself. This is done for one medium of a scene, the first that allows it.
-void simplify_regions(SurfaceScene surfaces, PathScene& scene);
+/// @param stood where the camera stands of which camera_media tells [world]; from there it goes to
+/// its place
+void simplify_regions(SurfaceScene surfaces, PathScene& scene, const Vec3d& stood);
 
 }  // namespace freepath

@@ -11,18 +11,12 @@
 #include "freepath/scene/assembly/build_media.h"
 #include "freepath/scene/assembly/build_shapes.h"
 #include "freepath/scene/assembly/build_textures.h"
+#include "freepath/scene/assembly/periodic_scene.h"
 #include "freepath/scene/assembly/region_simplifier.h"
 #include "freepath/scene/pbrt/parser.h"
 
 namespace freepath {
 namespace {
-
-/// Of all shapes [world].
-Box3d extent_of(const BuiltShapes& shapes) {
-  if (shapes.empty()) return {};
-  const Box3f bounds = Surfaces(shapes.surfaces, Vec3d(0)).bounds();
-  return bounds.isEmpty() ? Box3d() : Box3d(Vec3d(bounds.min), Vec3d(bounds.max));
-}
 
 /// Rays know places in single precision, and products of coordinates have to fit it too.
 constexpr double kFarthest = 1e15;
@@ -105,14 +99,25 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   scene.white_balance = Imath::M33f(built.picture.white_balance);
   name_media(context);
   build_camera(context, options.size.value_or(size));
+  const Vec3d stood = scene.camera->place();  // where the file puts it, and says what is around
   build_textures(context);
   build_materials(context);
   BuiltShapes shapes = build_shapes(context);
   leave_out_uv(scene.textures, shapes);
-  Box3d standing = extent_of(shapes);  // and, once they are built, media with bounds of their own
+  Box3d standing =
+      extent_of(shapes.surfaces);  // and, once they are built, media with bounds of their own
+  if (options.camera) scene.camera = changed_camera(*options.camera, *scene.camera, standing);
   Box3d extent = standing;
+  extent.extendBy(stood);
   extent.extendBy(scene.camera->place());
-  check_places(pbrt, extent, "shapes or the camera");
+  if (options.sides.extents) {  // fog without a boundary fills the domain
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!options.sides.axes[axis]) continue;
+      extent.min[axis] = std::min(extent.min[axis], options.sides.extents->min[axis]);
+      extent.max[axis] = std::max(extent.max[axis], options.sides.extents->max[axis]);
+    }
+  }
+  check_places(pbrt, extent, "shapes, the camera or the domain");
   build_media(context, extent);
   for (const SceneMedium& medium : scene.media) {
     check_places(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
@@ -130,8 +135,13 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   lights.emissions = shapes.emissions;
   lights.area_lights = build_area_lights(shapes, scene.origin);
   lights.origin = scene.origin;
+  if (options.sides.any()) check_lights_of_domain(lights);
   scene.lights.emplace(std::move(lights), *scene.spectra);
-  simplify_regions(std::move(shapes.surfaces), scene);
+  const SurfaceScene surfaces = options.sides.any() ? shapes.surfaces : SurfaceScene();
+  simplify_regions(std::move(shapes.surfaces), scene, stood);
+  if (options.sides.any()) {
+    make_periodic(scene, options.sides, standing, surfaces, options.super_voxel);
+  }
   built.files = std::move(context.files);
   return built;
 }

@@ -1,0 +1,97 @@
+// Scatterings in lanes, on every target: bit for bit what the scalar classes give.
+
+#include "freepath/transport/scattering_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "freepath/base/distributions.h"
+#include "freepath/base/random.h"
+#include "freepath/base/turn.h"
+#include "freepath/media/phase/henyey_greenstein.h"
+#include "freepath/transport/kernels.h"
+
+namespace freepath {
+namespace {
+
+constexpr float kCosines[] = {0, 0.85F, -0.4F, 0.999F, 1e-4F, -0.97F, 0.3F};
+constexpr uint64_t kSeed = 0x123456789ABCDEFU;
+
+/// Scatterings of any kind, in full or but for some at the end.
+ScatteringStream make_scatterings(uint32_t first, std::size_t count) {
+  ScatteringStream scatterings;
+  scatterings.count = count;
+  RandomStream random(kSeed, first, 0, 0);
+  for (uint32_t i = 0; i < count; ++i) {
+    scatterings.pixel[i] = first + i * 77;
+    scatterings.sample[i] = i * i;
+    scatterings.stream[i] = i * 4 + 2;
+    scatterings.g[i] = kCosines[i % std::size(kCosines)];
+    const Vec3f before = i == 0 ? Vec3f(0, 0, -1) : sample_sphere(random.uniform(), 0.3F);
+    const Vec3f light = sample_sphere(random.uniform(), random.uniform());
+    for (int axis = 0; axis < 3; ++axis) {
+      scatterings.direction[axis][i] = before[axis];
+      scatterings.to_light[axis][i] = light[axis];
+    }
+  }
+  return scatterings;
+}
+
+Vec3f vector_at(const std::array<ScatteringStream::Row<float>, 3>& rows, std::size_t i) {
+  return {rows[0][i], rows[1][i], rows[2][i]};
+}
+
+void expect_scalar(const ScatteringStream& lanes, std::size_t i) {
+  RandomStream random(kSeed, lanes.pixel[i], lanes.sample[i], lanes.stream[i]);
+  for (const auto& numbers : lanes.numbers) ASSERT_EQ(numbers[i], random.uniform());
+  const HenyeyGreenstein phase(lanes.g[i]);
+  const Vec3f before = vector_at(lanes.direction, i);
+  ASSERT_EQ(lanes.light_value[i], phase.evaluate(before, vector_at(lanes.to_light, i)));
+  const PhaseSample next =
+      phase.sample(before, lanes.numbers[kPhaseNumber][i], lanes.numbers[kPhaseNumber + 1][i]);
+  ASSERT_EQ(lanes.next_pdf[i], next.pdf);
+  ASSERT_EQ(vector_at(lanes.next, i), next.direction);
+}
+
+TEST(Scattering, LanesOfEveryTargetDoAsTheScalarClasses) {
+  for (const Simd simd : available_simd()) {
+    SCOPED_TRACE(std::string(to_string(simd)));
+    const ScatteringKernels& lanes = kernels(simd).scattering;
+    // Many rounds, so that numbers come that take a second word: one in 256 does.
+    for (uint32_t round = 0; round < 50; ++round) {
+      ScatteringStream scatterings =
+          make_scatterings(round * 100000, ScatteringStream::kCapacity - round % 3 * 5);
+      lanes.draw_numbers(scatterings, kSeed);
+      lanes.scatter(scatterings);
+      for (std::size_t i = 0; i < scatterings.count; ++i) {
+        SCOPED_TRACE(i);
+        ASSERT_NO_FATAL_FAILURE(expect_scalar(scatterings, i));
+      }
+    }
+  }
+}
+
+TEST(Turn, IsThatOfTheLibraryToTheLastDigits) {
+  constexpr int kSteps = 1 << 20;
+  double largest = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const float u = static_cast<float>(i) / kSteps;
+    const auto [sine, cosine] = sincos_of_turn(u);
+    const double angle = 2 * std::numbers::pi * u;
+    largest =
+        std::max({largest, std::abs(sine - std::sin(angle)), std::abs(cosine - std::cos(angle))});
+  }
+  EXPECT_LT(largest, 1e-7);
+  // At quarters nothing is rounded.
+  EXPECT_EQ(sincos_of_turn(0).sine, 0);
+  EXPECT_EQ(sincos_of_turn(0.25F).cosine, 0);
+  EXPECT_EQ(sincos_of_turn(0.5F).cosine, -1);
+  EXPECT_EQ(sincos_of_turn(0.75F).sine, -1);
+  EXPECT_EQ(sincos_of_turn(1).cosine, 1);
+}
+
+}  // namespace
+}  // namespace freepath
