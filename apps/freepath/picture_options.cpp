@@ -147,6 +147,10 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
                   "Ends paths, whose light is missing then [no limit; of a scene its maxdepth]")
       ->check(CLI::PositiveNumber)
       ->group("Method");
+  command
+      .add_flag("--all-shadow-rays", o.all_shadow_rays,
+                "Cast shadow rays that bring little too, not by Russian roulette")
+      ->group("Method");
 }
 
 }  // namespace
@@ -273,6 +277,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.threads = settle_threads(options.threads);
   settings.wavelengths = options.wavelengths;
   settings.batch = options.batch;
+  settings.shadow_roulette = !options.all_shadow_rays;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.absorption = parse_absorption(options.absorption);

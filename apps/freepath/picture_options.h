@@ -34,6 +34,7 @@ struct PictureOptions {
   std::string absorption = "weighted";
   std::vector<std::string> emission;
   uint32_t max_scatterings = 0;  ///< 0: no limit.
+  bool all_shadow_rays = false;
   uint64_t seed = 0;
   int threads = 0;
   std::size_t batch = RenderSettings{}.batch;

@@ -46,6 +46,7 @@ RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
     walk.tracker = standard_tracker(built.scene);
   }
   walk.tracker = to_string(parse_method(walk.tracker, tracker_infos()), tracker_infos());
+  settings.chooses_transmittance = !plan.transmittance && picture.transmittance.empty();
   walk.transmittance =
       plan.transmittance.value_or(picture.transmittance.empty() ? "ratio" : picture.transmittance);
   walk.transmittance =

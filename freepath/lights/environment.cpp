@@ -2,7 +2,7 @@
 
 #include <array>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include "freepath/base/error.h"
 
@@ -37,8 +37,10 @@ ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::str
   }
   std::vector<double> importance(image.pixel_count());  // of a direction in each pixel
   Imath::Color3<double> fluence(0.0);
+  std::vector<double> solid_angles;
   for (int row = 0; row < height_; ++row) {
     const double solid_angle = 2 * std::numbers::pi * (heights[row] - heights[row + 1]) / width_;
+    solid_angles.push_back(solid_angle);
     for (int column = 0; column < width_; ++column) {
       const Spectrum mean = mean_over_texel(column, row);
       for (int i = 0; i < kChannels; ++i) fluence[i] += mean[i] * solid_angle;
@@ -49,33 +51,13 @@ ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::str
     constexpr double kLargest = std::numeric_limits<float>::max();
     fluence_[i] = static_cast<float>(std::min(fluence[i], kLargest));
   }
-  const bool black =
-      std::all_of(importance.begin(), importance.end(), [](double value) { return value == 0; });
-  if (black) std::fill(importance.begin(), importance.end(), 1.0);
-  build_tables(importance, heights);
+  set_draws({std::move(importance), std::move(solid_angles)});
 }
 
-void ImageEnvironment::build_tables(const std::vector<double>& importance,
-                                    const std::vector<double>& heights) {
-  // Within a row all pixels have the same solid angle, so that it cancels there.
-  std::vector<double> row_power(height_);
-  columns_.reserve(importance.size());
-  for (int row = 0; row < height_; ++row) {
-    const std::span<const double> pixels(importance.data() + texel(0, row),
-                                         static_cast<std::size_t>(width_));
-    const double sum = std::accumulate(pixels.begin(), pixels.end(), 0.0);
-    row_power[row] = sum * 2 * std::numbers::pi * (heights[row] - heights[row + 1]) / width_;
-    if (sum > 0) {
-      const std::vector<AliasEntry> table = make_alias_table(pixels);
-      columns_.insert(columns_.end(), table.begin(), table.end());
-    } else {
-      columns_.insert(columns_.end(), width_, AliasEntry{1, 0});  // a row that is never chosen
-    }
-  }
-  rows_ = make_alias_table(row_power);
-  const double power = std::accumulate(row_power.begin(), row_power.end(), 0.0);
-  for (std::size_t i = 0; i < importance.size(); ++i) {
-    texels_[i][kPdf] = static_cast<float>(importance[i] / power);
+void ImageEnvironment::set_draws(PixelDraws draws) {
+  draws_ = std::move(draws);
+  for (std::size_t i = 0; i < texels_.size(); ++i) {
+    texels_[i][kPdf] = draws_.pdf(i);
   }
 }
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
 #include "freepath/io/image.h"
+#include "freepath/lights/pixel_draws.h"
 
 namespace freepath {
 
@@ -76,10 +76,7 @@ class ImageEnvironment {
 
   /// A direction whose density is what `evaluate` returns.
   Vec3f sample(float u0, float u1) const {
-    const AliasChoice row = choose(rows_, u1);
-    const std::span<const AliasEntry> columns(
-        columns_.data() + texel(0, static_cast<int>(row.index)), static_cast<std::size_t>(width_));
-    const AliasChoice column = choose(columns, u0);
+    const auto [row, column] = draws_.choose(u0, u1);
     const float top = row_heights_[row.index];
     const float bottom = row_heights_[row.index + 1];
     const float u =
@@ -92,6 +89,10 @@ class ImageEnvironment {
 
   int width() const { return width_; }
   int height() const { return height_; }
+
+  /// How directions are drawn.
+  const PixelDraws& draws() const { return draws_; }
+  void set_draws(PixelDraws draws);
 
  private:
   std::size_t texel(int column, int row) const {
@@ -126,8 +127,6 @@ class ImageEnvironment {
 
   /// Mean of the interpolant over a pixel.
   Spectrum mean_over_texel(int column, int row) const;
-  /// Makes the tables and densities from the importance of each pixel (per solid angle).
-  void build_tables(const std::vector<double>& importance, const std::vector<double>& heights);
 
   int width_, height_;
   UpAxis up_;
@@ -136,8 +135,7 @@ class ImageEnvironment {
   static constexpr std::size_t kPdf = 3;
   std::vector<Texel> texels_;
   std::vector<float> row_heights_;  // cosine of the zenith angle at the rows' upper edges
-  std::vector<AliasEntry> rows_;
-  std::vector<AliasEntry> columns_;  // a table for each row
+  PixelDraws draws_;
   Spectrum fluence_{0.0F};
 };
 

@@ -34,6 +34,13 @@ double illuminance_of(const Environment& environment, const Vec3f& up, const Vec
   return 4 * std::numbers::pi * sum / (static_cast<double>(size) * size);
 }
 
+/// An image is drawn if that makes the variance so many times smaller: PixelDraws::gain_above_mean.
+/// A path whose scatterings draw takes some three times as long as one whose don't, and its
+/// transmittances have variances of their own; a cloud under nine skies breaks even here, and
+/// beside a sun, which is drawn in any case and loses draws to the image, at twice as much.
+constexpr double kLeastGain = 8;
+constexpr double kLeastGainBesideSun = 16;
+
 Image without_negative(Image image) {
   for (float& value : image.values) value = value < 0 ? 0 : value;
   return image;
@@ -113,20 +120,41 @@ void InfiniteLights::add(const SunLight& light) {
   lights_.push_back(std::move(result));
 }
 
+void InfiniteLights::choose_draws(Light& light) const {
+  if (light.portal) return;
+  const bool has_sun = std::any_of(lights_.begin(), lights_.end(), [](const Light& other) {
+    return std::holds_alternative<Sun>(other.radiance);
+  });
+  const auto choose = [&](auto& image) {
+    light.is_drawn =
+        image.draws().gain_above_mean() >= (has_sun ? kLeastGainBesideSun : kLeastGain);
+    if (light.is_drawn) image.set_draws(image.draws().above_mean());
+  };
+  if (std::holds_alternative<Constant>(light.radiance)) {
+    light.is_drawn = false;
+  } else if (auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
+    choose(*image);
+  } else if (auto* const image = std::get_if<OctahedralEnvironment>(&light.radiance)) {
+    choose(*image);
+  }
+}
+
 void InfiniteLights::finish() {
   // A light counts by the integral of its radiance over all directions; but a fainter one may count
   // for more where the others are in shadow.
   constexpr double kEvenPart = 0.2;
   double sum = 0;
   double drawn = 0;
-  for (const Light& light : lights_) {
-    if (!light.is_drawn()) continue;
+  for (Light& light : lights_) {
+    choose_draws(light);
+    fluence_ += light.importance;
+    if (!light.is_drawn) continue;
     sum += light.importance;
     ++drawn;
   }
   is_drawn_ = drawn > 0;
   for (Light& light : lights_) {
-    if (!light.is_drawn()) continue;
+    if (!light.is_drawn) continue;
     light.share = static_cast<float>((1 - kEvenPart) * light.importance / sum + kEvenPart / drawn);
   }
 }

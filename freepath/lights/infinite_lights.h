@@ -24,7 +24,8 @@ namespace freepath {
 /// evaluation is needed for multiple importance sampling. Immutable; threads share it freely.
 ///
 /// A light that is the same from everywhere is never drawn: a path that escapes finds it by itself,
-/// and no draw could choose better than a phase function or a material does. A portal changes that.
+/// and no draw could choose better than a phase function or a material does. Nor is an image that
+/// varies little; of others, what is above the mean is drawn. A portal changes that.
 class InfiniteLights {
  public:
   /// Lights of each kind; those that are black are left out.
@@ -35,6 +36,8 @@ class InfiniteLights {
   /// To be called after the last light.
   void finish();
 
+  /// Luminance of the integral of the radiance over all directions.
+  double fluence() const { return fluence_; }
   /// Whether there is something to draw.
   bool is_drawn() const { return is_drawn_; }
 
@@ -59,7 +62,7 @@ class InfiniteLights {
     double importance = 0;
     float share = 0;  // probability of drawing it
 
-    bool is_drawn() const { return portal || !std::holds_alternative<Constant>(radiance); }
+    bool is_drawn = true;
   };
 
   /// Radiance of a light as if it had neither frame nor portal.
@@ -68,10 +71,13 @@ class InfiniteLights {
                                  const SpectrumValues& values, float& pdf);
   static LightSeen evaluate_framed(const Light& light, const Vec3f& from, const Vec3f& direction,
                                    const SpectrumValues& values);
+  /// Decides what of a light is drawn.
+  void choose_draws(Light& light) const;
   static Vec3f sample_world(const Light& light, float u0, float u1);
 
   std::vector<Light> lights_;
   bool is_drawn_ = false;
+  double fluence_ = 0;
 };
 
 }  // namespace freepath

@@ -1,6 +1,7 @@
 #include "freepath/lights/octahedral_environment.h"
 
 #include <numeric>
+#include <utility>
 
 #include "freepath/base/error.h"
 #include "freepath/lights/photometry.h"
@@ -23,30 +24,9 @@ OctahedralEnvironment::OctahedralEnvironment(const Image& image, const Vec3f& lu
           std::max(colour.dot(luminance_weights), kLeast * (colour.x + colour.y + colour.z));
     }
   }
-  const double texels = static_cast<double>(size_) * size_;
-  double sum = std::accumulate(importance.begin(), importance.end(), 0.0);
-  fluence_ = 4 * std::numbers::pi * sum / texels;
-  if (sum == 0) {  // a black image is sampled uniformly
-    std::fill(importance.begin(), importance.end(), 1.0);
-    sum = texels;
-  }
-  std::vector<double> row_sums(size);
-  columns_.reserve(importance.size());
-  for (std::size_t row = 0; row < size; ++row) {
-    const std::span<const double> pixels(importance.data() + row * size, size);
-    row_sums[row] = std::accumulate(pixels.begin(), pixels.end(), 0.0);
-    if (row_sums[row] > 0) {
-      const std::vector<AliasEntry> table = make_alias_table(pixels);
-      columns_.insert(columns_.end(), table.begin(), table.end());
-    } else {
-      columns_.insert(columns_.end(), size, AliasEntry{1, 0});  // a row that is never chosen
-    }
-  }
-  rows_ = make_alias_table(row_sums);
-  pdf_.reserve(importance.size());
-  for (const double value : importance) {
-    pdf_.push_back(static_cast<float>(value / sum * texels / (4 * std::numbers::pi)));
-  }
+  const double solid_angle = 4 * std::numbers::pi / (static_cast<double>(size_) * size_);
+  fluence_ = solid_angle * std::accumulate(importance.begin(), importance.end(), 0.0);
+  draws_ = {std::move(importance), std::vector<double>(size, solid_angle)};
 }
 
 }  // namespace freepath

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <numbers>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "freepath/base/distributions.h"
 #include "freepath/base/octahedral.h"
 #include "freepath/base/vector.h"
 #include "freepath/io/image.h"
 #include "freepath/lights/environment.h"
+#include "freepath/lights/pixel_draws.h"
 
 namespace freepath {
 
@@ -32,15 +32,12 @@ class OctahedralEnvironment {
     const float y = p.v * static_cast<float>(size_);
     const int column = std::clamp(static_cast<int>(x), 0, size_ - 1);
     const int row = std::clamp(static_cast<int>(y), 0, size_ - 1);
-    return {Spectrum(radiance_[texel(column, row)]), pdf_[texel(column, row)]};
+    return {Spectrum(radiance_[texel(column, row)]), draws_.pdf(texel(column, row))};
   }
 
   /// A direction whose density is what `evaluate` returns.
   Vec3f sample(float u0, float u1) const {
-    const AliasChoice row = choose(rows_, u1);
-    const std::span<const AliasEntry> columns(
-        columns_.data() + texel(0, static_cast<int>(row.index)), static_cast<std::size_t>(size_));
-    const AliasChoice column = choose(columns, u0);
+    const auto [row, column] = draws_.choose(u0, u1);
     const auto size = static_cast<float>(size_);
     return direction_from_octahedral({(static_cast<float>(column.index) + column.remainder) / size,
                                       (static_cast<float>(row.index) + row.remainder) / size});
@@ -50,15 +47,17 @@ class OctahedralEnvironment {
   double fluence() const { return fluence_; }
   int size() const { return size_; }
 
+  /// How directions are drawn.
+  const PixelDraws& draws() const { return draws_; }
+  void set_draws(PixelDraws draws) { draws_ = std::move(draws); }
+
  private:
   std::size_t texel(int column, int row) const {
     return static_cast<std::size_t>(row) * size_ + column;
   }
   int size_;
   std::vector<Vec3f> radiance_;
-  std::vector<float> pdf_;  // [1/sr], for each pixel
-  std::vector<AliasEntry> rows_;
-  std::vector<AliasEntry> columns_;  // a table for each row
+  PixelDraws draws_;
   double fluence_ = 0;
 };
 

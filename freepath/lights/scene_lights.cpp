@@ -64,9 +64,10 @@ SceneLights::SceneLights(SceneLightsDescription description, const SpectrumTable
 }
 
 void SceneLights::set_shares() {
-  double illuminance = 0;
-  for (const Distant& light : distant_) illuminance += light.share;
-  for (Distant& light : distant_) light.share = static_cast<float>(light.share / illuminance);
+  for (const Distant& light : distant_) distant_illuminance_ += light.share;
+  for (Distant& light : distant_) {
+    light.share = static_cast<float>(light.share / distant_illuminance_);
+  }
   const bool infinite = infinite_.is_drawn();
   const bool distant = !distant_.empty();
   const bool within = !chooser_.is_dark();

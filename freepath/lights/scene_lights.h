@@ -53,6 +53,10 @@ class SceneLights {
   Channels emitted(uint32_t light, const SurfacePoint& point, const Vec3f& towards,
                    const SpectrumValues& values) const;
 
+  /// Luminance of the integral over all directions of the light from outside of the scene, were
+  /// nothing in between.
+  double fluence() const { return infinite_.fluence() + distant_illuminance_; }
+
   /// Whether there is a light to draw.
   bool is_drawn() const { return infinite_.is_drawn() || !distant_.empty() || !chooser_.is_dark(); }
 
@@ -100,6 +104,7 @@ class SceneLights {
   std::vector<Area> areas_;
   std::vector<Part> parts_;
   LightChooser chooser_;  // of punctual lights, then parts
+  double distant_illuminance_ = 0;
   float infinite_share_ = 0, distant_share_ = 0, within_share_ = 0;
 };
 

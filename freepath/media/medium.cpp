@@ -52,6 +52,21 @@ void check_component(const Component& component, const Component& first, std::si
   }
 }
 
+/// Whether all voxels in the bounds of the active ones have one value.
+bool is_uniform(const BrickMap& voxels) {
+  const Vec3i first = voxels.active_min();
+  const Vec3i last = voxels.active_max();
+  const float value = voxels.value(first);
+  for (int x = first.x; x <= last.x; ++x) {
+    for (int y = first.y; y <= last.y; ++y) {
+      for (int z = first.z; z <= last.z; ++z) {
+        if (voxels.value({x, y, z}) != value) return false;
+      }
+    }
+  }
+  return true;
+}
+
 /// Edge of a cube with a voxel's volume [world], for the cost model alone.
 double voxel_edge(const Matrix4d& index_to_world) {
   return std::cbrt(std::abs(index_to_world.determinant()));
@@ -220,6 +235,20 @@ Medium Medium::clipped_to_voxels() const {
 Medium Medium::clipped_to_middles() const {
   Medium clipped = *this;
   clipped.reach_ = 0;
+  // Bounds of cells count the voxels beyond, which no filter reads within the outermost middles.
+  // Where all others are equal, the least is the largest.
+  std::vector<WalkPart> parts = *parts_;
+  const std::size_t count = components_.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Field& field = *components_[k].density;
+    if (field.function || !is_uniform(field.voxels)) continue;
+    for (WalkPart& part : parts) {
+      for (std::size_t i = k; i < part.cells.minima.size(); i += count) {
+        part.cells.minima[i] = part.cells.maxima[i];
+      }
+    }
+  }
+  clipped.set_parts(std::move(parts));
   return clipped;
 }
 

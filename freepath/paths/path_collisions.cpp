@@ -54,6 +54,20 @@ void PathWavefront::draw_light_of(std::size_t i) {
   for (int axis = 0; axis < 3; ++axis) scatterings_.to_light[axis][i] = to_light[axis];
 }
 
+float PathWavefront::shadow_survival(const ScenePath& path, const Vec3f& position,
+                                     const LightDraw& light, const Channels& radiance,
+                                     bool in_rgb) const {
+  const ShadowGuide* const guide = setup_.shadow_guide;
+  if (guide == nullptr || std::isfinite(light.distance)) return 1;
+  float brightness = 0;
+  if (in_rgb) {
+    brightness = (radiance[0] + radiance[1] + radiance[2]) / 3;
+  } else {
+    brightness = path.mean(radiance) * path.colors->per_white;
+  }
+  return guide->survival(path.scatterings, path.medium, position, light.direction, brightness);
+}
+
 void PathWavefront::cast_shadow(std::size_t i) {
   const Scattering& scattering = scattered_[i];
   const LightDraw& light = scattering.light;
@@ -64,8 +78,14 @@ void PathWavefront::cast_shadow(std::size_t i) {
                           ? scatterings_.light_value[i]
                           : scattering.phase->evaluate(path.direction, light.direction);
   const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
-  const Channels radiance = light_throughput(path, scattering.in_rgb) * light.radiance * share;
+  Channels radiance = light_throughput(path, scattering.in_rgb) * light.radiance * share;
   if (is_black(radiance)) return;
+  const float survival =
+      shadow_survival(path, scattering.position, light, radiance, scattering.in_rgb);
+  if (survival < 1) {
+    if (scatterings_.numbers[kShadowNumber][i] >= survival) return;
+    radiance *= 1 / survival;
+  }
   shadows_.add(static_cast<uint32_t>(scattering.slot), path, scattering.position, light.direction,
                shadow_end(light), path.place, radiance, scattering.in_rgb);
 }

@@ -65,11 +65,12 @@ double shift_of(uint64_t seed) {
 }  // namespace
 
 ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths,
-                           const WalkSettings& walk)
+                           const WalkSettings& walk, bool chooses_transmittance)
     : scene_(scene),
       mode_(mode),
       wavelengths_(wavelengths),
       walk_(walk),
+      chooses_transmittance_(chooses_transmittance),
       combinations_(scene.media.size()) {
   if (wavelengths < 1 || wavelengths > kMaxChannels) {
     fail("a path carries 1 to {} wavelengths, not {}; CMake's FREEPATH_MAX_CHANNELS sets how many",
@@ -139,10 +140,14 @@ void ColorFactory::find_weight_growth(const SpectrumValues& first) {
   }
 }
 
+BoundMedium ColorFactory::bound_in_rgb(std::size_t medium) const {
+  if (mode_ == ColorMode::kRgb) return constant_[medium]->bound;
+  return scene_.media[medium].bind(scene_.spectra->in_rgb());
+}
+
 void ColorFactory::make_guides() {
   // What is made for R, G and B serves any wavelengths: a guide need not be exact, and where it
   // does not lead, paths still go.
-  const SpectrumValues rgb = scene_.spectra->in_rgb();
   for (std::size_t i = 0; i < scene_.media.size(); ++i) {
     std::unique_ptr<const EmissionGuide>& guide = guides_.emplace_back();
     const std::shared_ptr<const MediumWalkers>& walkers = constant_[i];
@@ -150,9 +155,7 @@ void ColorFactory::make_guides() {
       glow_is_spread_.push_back(true);
       continue;
     }
-    const bool has_rgb = walkers && mode_ == ColorMode::kRgb;
-    guide = std::make_unique<const EmissionGuide>(
-        has_rgb ? walkers->bound : scene_.media[i].bind(rgb), scene_.origin);
+    guide = std::make_unique<const EmissionGuide>(bound_in_rgb(i), scene_.origin);
     glow_is_spread_.push_back(is_spread(guide->cells(), scene_.media[i]));
     if (!(guide->power() > 0)) guide.reset();
   }
@@ -171,12 +174,14 @@ std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
     std::size_t medium, const SpectrumValues& spectra) const {
   auto result = std::make_shared<MediumWalkers>();
   result->bound = scene_.media[medium].bind(spectra);
-  add_walkers(*result);
+  add_walkers(*result, scene_.media[medium].is_homogeneous());
   return result;
 }
 
-void ColorFactory::add_walkers(MediumWalkers& walkers) const {
+void ColorFactory::add_walkers(MediumWalkers& walkers, bool is_homogeneous) const {
   WalkSettings settings = walk_;
+  // Which has no variance where the least extinction is all there is.
+  if (chooses_transmittance_ && is_homogeneous) settings.transmittance = "residual-ratio";
   settings.origin = scene_.origin;
   const MediumChannels& channels = walkers.bound.channels;
   if (paths_per_sample_ == 1) {
@@ -221,7 +226,7 @@ std::shared_ptr<const MediumWalkers> ColorFactory::make_combination(
   }
   try {
     result->bound.medium = combined_medium(combination, media);
-    add_walkers(*result);
+    add_walkers(*result, false);
   } catch (const Error& error) {
     fail(
         "the media {} overlap at a place and can't be rendered together ({}); let the boundary of "

@@ -38,7 +38,10 @@ class PathColors {
   /// @param factory must outlive this
   PathColors(const ColorFactory& factory, SpectrumValues values,
              std::vector<std::shared_ptr<const MediumWalkers>> walkers)
-      : spectra(std::move(values)), media(std::move(walkers)), factory_(factory) {}
+      : spectra(std::move(values)),
+        per_white(1 / mean_of_white(spectra)),
+        media(std::move(walkers)),
+        factory_(factory) {}
 
   /// Of a medium, or of a combination, which are made when they are first asked for.
   /// @throws Error if the media of a combination can't be walked together
@@ -52,10 +55,19 @@ class PathColors {
   }
 
   const SpectrumValues spectra;
+  /// What makes the mean of a radiance's channels 1 where it is white: an illuminant of R, G, B
+  /// = 1.
+  const float per_white;
   const std::vector<std::shared_ptr<const MediumWalkers>> media;
 
  private:
   const MediumWalkers& combination(MediumId medium) const;
+  static float mean_of_white(const SpectrumValues& spectra) {
+    const Channels white = spectra.illuminant(Vec3f(1));
+    float sum = 0;
+    for (int c = 0; c < spectra.channels(); ++c) sum += white[c];
+    return sum / static_cast<float>(spectra.channels());
+  }
 
   const ColorFactory& factory_;
   mutable std::shared_mutex mutex_;
@@ -75,7 +87,10 @@ class ColorFactory {
   /// @param scene must outlive this
   /// @throws Error as Walker
   /// @param wavelengths of a path in spectral mode, 1 to kMaxChannels
-  ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths, const WalkSettings& walk);
+  /// @param chooses_transmittance whether homogeneous media have the estimator that is exact there
+  ///   in place of that of `walk`
+  ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths, const WalkSettings& walk,
+               bool chooses_transmittance = false);
 
   /// Number of the set of wavelengths that a sample has; in R, G, B its own.
   /// @param pixel of the whole picture
@@ -104,6 +119,9 @@ class ColorFactory {
     const auto number = static_cast<std::size_t>(medium);
     return number >= glow_is_spread_.size() || glow_is_spread_[number];
   }
+  const PathScene& scene() const { return scene_; }
+  /// A medium of the scene in R, G and B.
+  BoundMedium bound_in_rgb(std::size_t medium) const;
   /// What fills a place.
   MediumId medium_of(const MediaSet& media) const { return combinations_.of(media); }
   /// The walkers of a combination of media, made of those of its media.
@@ -119,7 +137,7 @@ class ColorFactory {
  private:
   std::shared_ptr<const MediumWalkers> make_walkers(std::size_t medium,
                                                     const SpectrumValues& spectra) const;
-  void add_walkers(MediumWalkers& walkers) const;
+  void add_walkers(MediumWalkers& walkers, bool is_homogeneous) const;
   std::shared_ptr<const MediumWalkers> make_combination(MediumId combination,
                                                         const PathColors& colors) const;
   std::shared_ptr<const Medium> combined_medium(
@@ -134,6 +152,7 @@ class ColorFactory {
   ColorMode mode_;
   int wavelengths_;
   WalkSettings walk_;
+  bool chooses_transmittance_;
   int paths_per_sample_ = 1;
   bool depends_on_wavelengths_ = false;
   uint32_t sets_per_block_ = 1;

@@ -233,7 +233,9 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
       const MaterialValue f =
           material.evaluate(hit.point, path.direction, light.direction, random, context);
       const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
-      const Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
+      Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
+      const float survival = shadow_survival(path, position, light, radiance, false);
+      if (survival < 1) radiance *= random.uniform() < survival ? 1 / survival : 0.0F;
       if (!is_black(radiance)) {
         const Departure departure = depart(path, hit, light.direction);
         shadows_.add(static_cast<uint32_t>(slot), path, departure.origin, light.direction,

@@ -16,6 +16,7 @@
 #include "freepath/paths/path_job.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/path_state.h"
+#include "freepath/paths/shadow_guide.h"
 #include "freepath/paths/shadow_tracer.h"
 #include "freepath/paths/walk_batches.h"
 #include "freepath/sensors/film.h"
@@ -38,6 +39,8 @@ struct PathSetup {
   /// Whether scatterings in emissive media also look for their light along lines of its own; where
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
+  /// Which shadow rays are cast; null: all.
+  const ShadowGuide* shadow_guide = nullptr;
   std::size_t slots = kPathsInFlight;
   /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const PathColors>> colors;
@@ -161,6 +164,9 @@ class PathWavefront {
   void scatter_in_media();
   /// Draws the light for a scattering in the queue.
   void draw_light_of(std::size_t scattering);
+  /// With what probability to cast a shadow ray that brings this if nothing is in between.
+  float shadow_survival(const ScenePath& path, const Vec3f& position, const LightDraw& light,
+                        const Channels& radiance, bool in_rgb) const;
   /// Casts a ray towards that light.
   void cast_shadow(std::size_t scattering);
   /// Null where the flights of paths find all that a medium emits.

@@ -11,6 +11,7 @@
 #include "freepath/base/threads.h"
 #include "freepath/paths/pass_renderer.h"
 #include "freepath/paths/path_wavefront.h"
+#include "freepath/paths/shadow_guide.h"
 
 namespace freepath {
 namespace {
@@ -74,7 +75,7 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   }
   std::optional<ColorFactory> made;  // by the threads that are asked for
   Threads(settings.threads).execute([&] {
-    made.emplace(scene, mode, settings.wavelengths, settings.walk);
+    made.emplace(scene, mode, settings.wavelengths, settings.walk, settings.chooses_transmittance);
   });
   const ColorFactory& factory = *made;
   if (!settings.studies_unbounded_weights) {
@@ -83,7 +84,10 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
       require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
     }
   }
+  std::optional<ShadowGuide> shadow_guide;
+  if (settings.shadow_roulette) shadow_guide.emplace(factory, settings.walk.seed);
   PathSetup setup;
+  setup.shadow_guide = shadow_guide ? &*shadow_guide : nullptr;
   setup.scene = &scene;
   setup.factory = &factory;
   setup.seed = settings.walk.seed;

@@ -29,6 +29,10 @@ struct RenderSettings {
   /// Renders although the weights of paths are not bounded (WeightGrowth): to study methods, not
   /// for pictures.
   bool studies_unbounded_weights = false;
+  /// Estimates transmittances of homogeneous media without variance, whatever `walk` says.
+  bool chooses_transmittance = false;
+  /// Casts shadow rays that bring little by Russian roulette (ShadowGuide); else all are cast.
+  bool shadow_roulette = true;
   /// What the film records; path layers cost time, and all cost memory.
   LayerSet layers = LayerSet::standard();
   /// Channels of spectral radiance, in the light's own units (docs/scenes.md); recorded only where

@@ -10,9 +10,10 @@ namespace freepath {
 /// Numbers that a scattering draws, in this order; streams of one path have more behind them.
 enum ScatteringNumber : uint32_t {
   kRouletteNumber = 0,
-  kLightNumber = 1,  ///< Three.
-  kPhaseNumber = 4,  ///< Two.
-  kScatteringNumbers = 6,
+  kLightNumber = 1,   ///< Three.
+  kPhaseNumber = 4,   ///< Two.
+  kShadowNumber = 6,  ///< Whether to cast a shadow ray.
+  kScatteringNumbers = 7,
 };
 /// Blocks of four random words that these take.
 inline constexpr uint32_t kScatteringBlocks = 2;

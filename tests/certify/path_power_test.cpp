@@ -10,6 +10,7 @@
 
 #include "freepath/paths/renderer.h"
 #include "tests/certify/planted.h"
+#include "tests/scene/image_file.h"
 #include "tests/scene/rendered_scenes.h"
 #include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
@@ -94,6 +95,21 @@ FilmMean surface_furnace(uint32_t samples, uint64_t seed) {
       samples, seed);
 }
 
+/// Fog under a sky that is drawn, with shadow rays by roulette, and another that is found by
+/// chance.
+FilmMean sky_furnace(uint32_t samples, uint64_t seed) {
+  static const TwoSkies skies;
+  const std::string fog =
+      R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 2 2 2 ] )"
+      R"("rgb sigma_a" [ 0 0 0 ])"
+      "\n";
+  const std::string text =
+      kUnlimited + film(8) +
+      "LookAt 0.2 0.1 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 7\nWorldBegin\n" +
+      skies.lights() + fog + medium_box("fog", Vec3d(-1), Vec3d(1));
+  return mean_of(render_text(text, {.samples = samples, .seed = seed}).image);
+}
+
 struct Case {
   const char* name;
   Furnace furnace;
@@ -129,6 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, PathMutant,
     ::testing::Values(Case{"VolumeRoulette", volume_furnace, &Planted::roulette},
                       Case{"SceneRoulette", core_furnace, &Planted::roulette},
+                      Case{"ShadowRoulette", sky_furnace, &Planted::shadow_roulette},
                       Case{"SceneLightShare", core_furnace, &Planted::light_share},
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
                       Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),

@@ -151,7 +151,8 @@ void expect_samples_follow_pdf(const std::string& name, const Lights& lights) {
   EXPECT_TRUE(testing::check_chi_square(name, testing::chi_square_test(counts, expected)));
 }
 
-/// E[f · radiance / pdf] is the integral of f · radiance.
+/// What is drawn of f · radiance and what directions find that are drawn uniformly add up to its
+/// integral, by the balance heuristic.
 void expect_estimates_integral(const std::string& name, const Lights& lights) {
   // A lobe that no light is symmetric to, as a phase function would weight the light.
   const Vec3f axis = Vec3f(1, 0.4F, -0.7F).normalized();
@@ -172,8 +173,16 @@ void expect_estimates_integral(const std::string& name, const Lights& lights) {
     const float u0 = random.uniform();
     const float u1 = random.uniform();
     const LightSample sample = lights.sample(u0, u1, random.uniform());
-    estimates.add(sample.pdf > 0 ? f(sample.direction) * luminance(sample.radiance) / sample.pdf
-                                 : 0);
+    double estimate = 0;
+    if (sample.pdf > 0) {
+      const double density = sample.pdf + kUniformSpherePdf;
+      estimate += f(sample.direction) * luminance(sample.radiance) / density;
+    }
+    const float height = random.uniform();
+    const Vec3f found = sample_sphere(height, random.uniform());
+    const LightValue value = lights.evaluate(found);
+    estimate += f(found) * luminance(value.radiance) / (value.pdf + kUniformSpherePdf);
+    estimates.add(estimate);
   }
   EXPECT_TRUE(testing::check_mean(name, estimates, expected, {.absolute = 1e-4 * expected}));
 }
@@ -186,10 +195,19 @@ struct SamplingCase {
 std::vector<SamplingCase> all_lights() {
   const Sun sun({.elevation = 30, .azimuth = 200}, UpAxis::kY);
   const ImageEnvironment rough(rough_image(), UpAxis::kY, "rough");
+  const ImageEnvironment peak(grey_image(64, 32,
+                                         [](int column, int row) {
+                                           const int from_middle =
+                                               std::abs(column - 40) + std::abs(row - 9);
+                                           return from_middle < 3 ? 200.0F : 1 + 0.02F * column;
+                                         }),
+                              UpAxis::kY, "peak");
   const ImageEnvironment black(grey_image(8, 4, [](int, int) { return 0.0F; }), UpAxis::kY, "b");
   const ImageEnvironment one(grey_image(1, 1, [](int, int) { return 2.0F; }), UpAxis::kY, "1");
   return {{"sun alone", Lights({}, sun)},
           {"image", Lights(rough)},
+          {"image with a peak", Lights(peak)},
+          {"image with a peak and sun", Lights(peak, sun)},
           {"image and sun", Lights(rough, sun)},
           {"black image and sun", Lights(black, sun)},
           {"image of one pixel", Lights(one)},
@@ -198,7 +216,13 @@ std::vector<SamplingCase> all_lights() {
 }
 
 TEST(Lights, SamplesFollowADensityThatIntegratesToOne) {
-  for (const SamplingCase& c : all_lights()) expect_samples_follow_pdf(c.name, c.lights);
+  int drawn = 0;
+  for (const SamplingCase& c : all_lights()) {
+    if (!c.lights.is_drawn()) continue;
+    expect_samples_follow_pdf(c.name, c.lights);
+    ++drawn;
+  }
+  EXPECT_GE(drawn, 6);
 }
 
 TEST(Lights, SamplesEstimateTheIntegralOfTheLight) {
@@ -207,6 +231,7 @@ TEST(Lights, SamplesEstimateTheIntegralOfTheLight) {
 
 TEST(Lights, ASampleCarriesWhatEvaluationGives) {
   for (const SamplingCase& c : all_lights()) {
+    if (!c.lights.is_drawn()) continue;
     RandomStream random(31, 32, 33, 34);
     for (int i = 0; i < 20'000; ++i) {
       const float u0 = random.uniform();
@@ -240,6 +265,65 @@ TEST(Lights, AreNotDrawnWhereTheyAreBlack) {
   EXPECT_FALSE(Lights(black).is_drawn());
   EXPECT_TRUE(Lights(black, Sun({}, UpAxis::kY)).is_drawn());
   EXPECT_EQ(black.evaluate({0, 1, 0}).pdf, kUniformSpherePdf);
+}
+
+TEST(Lights, DrawImagesOnlyForTheirPeaks) {
+  // Most skies are even enough; beside a sun, which is drawn, some more are.
+  EXPECT_FALSE(Lights(make_sky({.elevation = 60}, UpAxis::kY)).is_drawn());
+  const SunParameters low{.elevation = 30, .azimuth = 200};
+  EXPECT_TRUE(Lights(make_sky(low, UpAxis::kY)).is_drawn());
+  const Lights both(make_sky(low, UpAxis::kY), Sun(low, UpAxis::kY));
+  EXPECT_EQ(both.pdf(sky_direction(25, 200, UpAxis::kY)), 0);
+  EXPECT_GT(both.pdf(sky_direction(30, 200, UpAxis::kY)), 0);
+  // A cap of a radius [rows] that brings some part of the light.
+  const auto cap = [](float radius, float share) {
+    const auto in_cap = [&](int, int row) {
+      return static_cast<float>(row) < radius ? 1.0F : 0.0F;
+    };
+    const float part = 0.5F * (1 - std::cos(std::numbers::pi_v<float> * radius / 180));
+    return ImageEnvironment(grey_image(360, 180,
+                                       [&](int column, int row) {
+                                         return 1 - share + in_cap(column, row) * share / part;
+                                       }),
+                            UpAxis::kY, "cap");
+  };
+  EXPECT_FALSE(Lights(cap(90, 1)).is_drawn());
+  EXPECT_FALSE(Lights(cap(30, 0.02F)).is_drawn());
+  EXPECT_TRUE(Lights(cap(10, 0.5F)).is_drawn());
+  const Lights peaked(cap(10, 0.5F));
+  EXPECT_GT(peaked.pdf({0, 1, 0}), 100 * kUniformSpherePdf);
+  EXPECT_EQ(peaked.pdf({0, -1, 0}), 0) << "what is below the mean is found by chance";
+}
+
+TEST(PixelDraws, TheirGainIsThatOfASimulation) {
+  // Four pixels of equal solid angle.
+  const std::vector<double> importance{20, 2, 1, 1};
+  const std::vector<double> solid_angles(2, std::numbers::pi);
+  const PixelDraws plain(importance, solid_angles);
+  const PixelDraws drawn = plain.above_mean();
+  const auto part = [&](std::size_t pixel) {
+    return importance[pixel] / (1 + drawn.pdf(pixel) / kUniformSpherePdf);
+  };
+  testing::RunningStatistics with_draws;
+  testing::RunningStatistics without;
+  RandomStream random(5, 6, 7, 8);
+  for (int i = 0; i < 400'000; ++i) {
+    const auto found = static_cast<std::size_t>(random.uniform() * 4);
+    without.add(importance[found]);
+    double sum = part(found);
+    for (int draw = 0; draw < 2; ++draw) {
+      const float u = random.uniform();
+      const PixelDraws::Choice choice = drawn.choose(u, random.uniform());
+      const bool is_lit = random.uniform() < 0.5F;
+      if (is_lit) sum += part(choice.row.index * 2 + choice.column.index);
+    }
+    with_draws.add(sum);
+  }
+  EXPECT_NEAR(without.mean(), 6, 0.1);
+  EXPECT_NEAR(with_draws.mean(), without.mean(), 0.1);
+  const double gain = without.variance() / with_draws.variance();
+  EXPECT_NEAR(plain.gain_above_mean(), gain, 0.03 * gain);
+  EXPECT_EQ(PixelDraws({3, 3, 3, 3}, solid_angles).gain_above_mean(), 0);
 }
 
 TEST(ImageEnvironment, FollowsTheLatLongConvention) {

@@ -105,6 +105,7 @@ TEST(SparseExtents, CostsGrowLikeTheVoxelsAtEveryExtent) {
 TEST(SparseExtents, ADiagonalOfBricksCostsWhatItsBricksCost) {
   const auto diagonal = [](int bricks) {
     std::vector<PlacedVoxel> voxels;
+    voxels.reserve(bricks);
     for (int i = 0; i < bricks; ++i) voxels.push_back({Vec3i(8 * i), 1});
     return costs_of(medium_of_fields({field_of_voxels(voxels)}));
   };

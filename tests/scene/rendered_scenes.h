@@ -62,6 +62,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.walk.seed = options.seed;
   settings.walk.tracker = standard_tracker(built.scene);
   if (!built.picture.tracker.empty()) settings.walk.tracker = built.picture.tracker;
+  settings.chooses_transmittance = built.picture.transmittance.empty();
   if (!built.picture.transmittance.empty()) {
     settings.walk.transmittance = built.picture.transmittance;
   }

@@ -3,39 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <string>
-#include <vector>
 
-#include "freepath/io/image.h"
+#include "tests/scene/image_file.h"
 #include "tests/scene/lit_plane.h"
 #include "tests/scene/twin_scenes.h"
 
 namespace freepath::testing {
 namespace {
-
-/// A file of an image in colours of R, G, B.
-class ImageFile {
- public:
-  ImageFile(const std::string& name, int width, int height,
-            const std::function<Vec3f(int column, int row)>& colour)
-      : file_(name) {
-    Image image{width, height, {"R", "G", "B"}};
-    for (int row = 0; row < height; ++row) {
-      for (int column = 0; column < width; ++column) {
-        const Vec3f value = colour(column, row);
-        image.values.insert(image.values.end(), {value.x, value.y, value.z});
-      }
-    }
-    write_exr(file_.path().string(), image);
-  }
-  /// The parameter of a light.
-  std::string parameter() const { return R"("string filename" ")" + file_.path().string() + "\" "; }
-
- private:
-  TemporaryFile file_;
-};
 
 // The image is 1 where its x is negative and 3 where it is positive. A surface that faces along x
 // sees one half alone, one that faces along y sees halves of both.
@@ -53,6 +29,28 @@ TEST(SceneLightImage, OfTheSkyIsTurnedWithIt) {
   expect("x is up", "Rotate -90 0 1 0", 3 * std::numbers::pi);
   expect("x is down", "Rotate 90 0 1 0", std::numbers::pi);
   expect("z is up", "", 2 * std::numbers::pi);
+}
+
+// Of two skies that add up to white one is drawn, by what is above its mean, and the other is found
+// by chance; shadow rays towards the one are cast by roulette.
+TEST(SceneLightImage, TwoThatAddUpToWhiteMakeAFurnace) {
+  const TwoSkies skies;
+  const std::string fog =
+      R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 2 3 1 ] )"
+      R"("rgb sigma_a" [ 0 0 0 ] "float g" 0.4)"
+      "\n";
+  const std::string text =
+      kUnlimited + film() +
+      "LookAt 1 0.5 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nWorldBegin\n" +
+      skies.lights() + fog + medium_box("fog", Vec3d(-1), Vec3d(1));
+  for (const ColorMode mode : {ColorMode::kRgb, ColorMode::kSpectral}) {
+    const Picture picture = render_text(text, {.mode = mode, .samples = 512});
+    expect_sound(picture);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_LT(std::abs(picture.mean[c] - 1), 4 * picture.error[c] + 1e-4) << c;
+      EXPECT_LT(picture.error[c], 2e-3);
+    }
+  }
 }
 
 /// Four times the factor of an element below the corner of a parallel rectangle, for half edges of

@@ -236,9 +236,9 @@ constexpr const char* kFogScene =
 
 std::string fog_scene(const std::string& parameters, const std::string& lights) {
   return kUnlimited + film(8) + kFogScene + lights +
-         "MakeNamedMedium \"fog\" \"string type\" \"uniformgrid\" \"integer nx\" 4 \"integer ny\" "
+         R"(MakeNamedMedium "fog" "string type" "uniformgrid" "integer nx" 4 "integer ny" )"
          "4 "
-         "\"integer nz\" 4 \"point3 p0\" [ -1 -1 -1 ] \"point3 p1\" [ 1 1 1 ] \"float density\" "
+         R"("integer nz" 4 "point3 p0" [ -1 -1 -1 ] "point3 p1" [ 1 1 1 ] "float density" )"
          "[ " +
          [] {
            std::string ones;
@@ -254,7 +254,7 @@ BuiltScene build(const std::string& text, const BuildOptions& options) {
 }
 
 TEST(SceneOptions, TheEnvironmentReplacesLightsFromAllAroundAndTheSunIsAdded) {
-  const std::string black = "\"rgb sigma_a\" [ 0 0 0 ] \"rgb sigma_s\" [ 0 0 0 ]";
+  const std::string black = R"("rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0 0 0 ])";
   const std::string text = fog_scene(black, "LightSource \"infinite\" \"rgb L\" [ 7 7 7 ]\n");
   const auto mean = [&](const BuildOptions& options) {
     return picture_of(build(text, options), {.samples = 4}).mean[1];
@@ -293,7 +293,7 @@ TEST(SceneOptions, FillInWhatMediaLeaveOpen) {
   EXPECT_FLOAT_EQ(open[0], 0.25F);
   EXPECT_FLOAT_EQ(open[1], 0.5F);
   EXPECT_FLOAT_EQ(open[2], forward);
-  const auto given = medium("\"float g\" 0 \"rgb sigma_a\" [ 3 3 3 ] \"rgb sigma_s\" [ 2 2 2 ]");
+  const auto given = medium(R"("float g" 0 "rgb sigma_a" [ 3 3 3 ] "rgb sigma_s" [ 2 2 2 ])");
   EXPECT_FLOAT_EQ(given[0], 3);
   EXPECT_FLOAT_EQ(given[1], 2);
   EXPECT_NEAR(given[2], 0.25 / std::numbers::pi, 1e-6);

@@ -182,7 +182,7 @@ Box3d extent_of(const SurfaceScene& surfaces) {
     return Box3d(Vec3d(bounds.min) + origin, Vec3d(bounds.max) + origin);
   };
   const Box3d extent = around(Vec3d(0));
-  if (extent.isEmpty()) return extent;
+  if (extent.isEmpty()) return {};
   // Far from the origin floats are coarse.
   constexpr double kFar = 16;  // sizes
   const Vec3d center = extent.center();

@@ -1,0 +1,157 @@
+#include "freepath/paths/shadow_guide.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "freepath/base/random.h"
+#include "freepath/paths/walk_batches.h"
+#include "freepath/transport/walker.h"
+
+namespace freepath {
+namespace {
+
+/// Of what an isotropic scattering brings: fainter rays play. Half of it gives little, twice as
+/// much costs noise where few scatterings bring most of the light.
+constexpr float kThreshold = 0.2F;
+/// Rays are cast with this probability at least, so that none counts for much more than others.
+constexpr float kLeastSurvival = 0.1F;
+
+/// Draws from which the dominant direction is found.
+constexpr uint32_t kDraws = 256;
+/// Steps of a lattice whose points fill a cube evenly: inverse powers of the root of x⁴ = x + 1.
+constexpr std::array<double, 2> kLattice{0.8191725133961645, 0.6710436067037893};
+/// Directions this close to the dominant one count as that.
+constexpr float kSameDirection = 0.985F;
+/// A direction is dominant if so much of the light comes from there.
+constexpr float kDominantShare = 0.25F;
+
+/// Cells along the longest side of a medium, and shadow rays of each.
+constexpr int kCells = 24;
+constexpr uint32_t kRaysOfCell = 4;
+/// Streams that no path has.
+constexpr uint32_t kPlaceStream = 0xFFFFFFFDU;
+constexpr uint32_t kWalkStream = 0xFFFFFFFCU;
+/// Media beyond these have no cells: their tables would take longer than they save.
+constexpr std::size_t kMostMedia = 4;
+
+}  // namespace
+
+ShadowGuide::ShadowGuide(const ColorFactory& factory, uint64_t seed) {
+  const PathScene& scene = factory.scene();
+  if (!scene.lights->is_drawn()) return;
+  const double scattered = scene.lights->fluence() / (4 * std::numbers::pi);
+  least_ = kThreshold * static_cast<float>(scattered);
+  const std::vector<SceneMedium>& media = scene.media;
+  if (!(least_ > 0) || media.empty() || media.size() > kMostMedia || scene.domain) return;
+  find_dominant(scene);
+  if (!dominant_) return;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    cells_.push_back(tabulate(scene, factory.bound_in_rgb(i), media[i].bounds(), seed));
+  }
+}
+
+void ShadowGuide::find_dominant(const PathScene& scene) {
+  Box3d bounds;
+  for (const SceneMedium& medium : scene.media) bounds.extendBy(medium.bounds());
+  const Vec3f middle(bounds.center() - scene.origin);
+  const SpectrumValues rgb = scene.spectra->in_rgb();
+  struct Draw {
+    Vec3f direction;
+    float power;
+  };
+  std::vector<Draw> draws;
+  float sum = 0;
+  for (uint32_t i = 0; i < kDraws; ++i) {
+    // Points of a lattice, the same for all scenes.
+    const double n = i + 0.5;
+    const auto u = [&](double step) { return static_cast<float>(n * step - std::floor(n * step)); };
+    const LightDraw light =
+        scene.lights->sample(middle, rgb, u(kLattice[0]), u(kLattice[1]),
+                             std::min(static_cast<float>(n / kDraws), kBelowOne));
+    if (!(light.pdf > 0) || std::isfinite(light.distance)) continue;
+    const float power = (light.radiance[0] + light.radiance[1] + light.radiance[2]) / light.pdf;
+    draws.push_back({light.direction, power});
+    sum += power;
+  }
+  float largest = 0;
+  for (const Draw& candidate : draws) {
+    float around = 0;
+    for (const Draw& other : draws) {
+      if (candidate.direction.dot(other.direction) >= kSameDirection) around += other.power;
+    }
+    if (around <= largest) continue;
+    largest = around;
+    dominant_ = candidate.direction;
+  }
+  if (largest < kDominantShare * sum) dominant_.reset();
+}
+
+ShadowGuide::Cells ShadowGuide::tabulate(const PathScene& scene, const BoundMedium& bound,
+                                         const Box3d& bounds, uint64_t seed) const {
+  Cells cells;
+  const Vec3d size = bounds.size();
+  const double edge = std::max({size.x, size.y, size.z}) / kCells;
+  if (!(edge > 0) || !std::isfinite(edge)) return cells;
+  cells.corner = Vec3f(bounds.min - scene.origin);
+  for (int axis = 0; axis < 3; ++axis) {
+    cells.counts[axis] = std::clamp(static_cast<int>(std::ceil(size[axis] / edge)), 1, kCells);
+    cells.per_cell[axis] = static_cast<float>(cells.counts[axis] / std::max(size[axis], edge));
+  }
+  const auto count = static_cast<uint32_t>(cells.counts.x * cells.counts.y * cells.counts.z);
+  RayStream rays;
+  rays.resize(std::size_t{count} * kRaysOfCell);
+  for (uint32_t i = 0; i < rays.size(); ++i) {
+    const uint32_t cell = i % count;
+    const Vec3i place(static_cast<int>(cell) % cells.counts.x,
+                      static_cast<int>(cell) / cells.counts.x % cells.counts.y,
+                      static_cast<int>(cell) / cells.counts.x / cells.counts.y);
+    RandomStream random(seed, cell, i / count, kPlaceStream);
+    const Vec3f within{random.uniform(), random.uniform(), random.uniform()};
+    set_ray(rays, i, cells.corner + (Vec3f(place) + within) / cells.per_cell, *dominant_,
+            std::numeric_limits<float>::infinity());
+    rays.pixel[i] = cell;
+    rays.sample[i] = i / count;
+    rays.stream[i] = kWalkStream;
+  }
+  // Of channels that differ, that which is let through best.
+  cells.roots.resize(count);
+  const int channels = bound.channels.has_grey_extinction() ? 1 : bound.channels.count;
+  FlightStream flights;
+  WalkStatistics statistics;
+  for (int channel = 0; channel < channels; ++channel) {
+    const WalkSettings settings{.seed = seed, .origin = scene.origin};
+    const Walker walker(*bound.medium, bound.channels.only(channel), settings);
+    walker.transmittance(rays, flights, statistics);
+    for (uint32_t cell = 0; cell < count; ++cell) {
+      float sum = 0;
+      for (uint32_t n = 0; n < kRaysOfCell; ++n) sum += flights.weight[0][cell + n * count];
+      const float mean = std::max(sum, 0.0F) / kRaysOfCell;
+      cells.roots[cell] = std::max(cells.roots[cell], std::sqrt(mean));
+    }
+  }
+  return cells;
+}
+
+float ShadowGuide::survival_of_faint(MediumId medium, const Vec3f& position, const Vec3f& direction,
+                                     float brightness) const {
+  float expected = brightness;
+  const auto number = static_cast<std::size_t>(medium);
+  if (number < cells_.size() && !cells_[number].roots.empty() &&
+      direction.dot(*dominant_) >= kSameDirection) {
+    const Cells& cells = cells_[number];
+    std::size_t place = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      const float at = (position[axis] - cells.corner[axis]) * cells.per_cell[axis];
+      const int cell =
+          static_cast<int>(std::clamp(at, 0.0F, static_cast<float>(cells.counts[axis] - 1)));
+      place = place * cells.counts[axis] + cell;
+    }
+    expected *= cells.roots[place];
+  }
+  return std::clamp(expected / least_, kLeastSurvival, 1.0F);
+}
+
+}  // namespace freepath
