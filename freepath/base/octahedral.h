@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "freepath/base/distributions.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -43,9 +44,9 @@ inline Vec3f direction_from_octahedral(const SquarePoint& p) {
   const float av = std::abs(v);
   const float inside = 1.0F - (au + av);  // below 0 on the lower half
   const float r = 1.0F - std::abs(inside);
-  const float angle = (r <= 0 ? 1.0F : (av - au) / r + 1.0F) * (0.25F * std::numbers::pi_v<float>);
+  const SinCos azimuth = sincos_of_turn((r <= 0 ? 1.0F : (av - au) / r + 1.0F) * 0.125F);
   const float across = r * std::sqrt(std::max(0.0F, 2.0F - r * r));
-  return {std::copysign(across * std::cos(angle), u), std::copysign(across * std::sin(angle), v),
+  return {std::copysign(across * azimuth.cosine, u), std::copysign(across * azimuth.sine, v),
           std::copysign(1.0F - r * r, inside)};
 }
 

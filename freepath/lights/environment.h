@@ -14,6 +14,7 @@
 
 #include "freepath/base/distributions.h"
 #include "freepath/base/spectrum.h"
+#include "freepath/base/turn.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
 #include "freepath/io/image.h"
@@ -25,6 +26,13 @@ namespace freepath {
 struct LightValue {
   Spectrum radiance{0.0F};
   float pdf = 0;  ///< [1/sr]
+};
+
+/// A direction that was drawn, and what `evaluate` gives for it but where rounding moves it over
+/// the edge of a pixel.
+struct LightDirection {
+  Vec3f direction;
+  LightValue light;
 };
 
 /// A point of a latitude-longitude image; both coordinates run from 0 to 1, (0, 0) is the upper
@@ -46,9 +54,9 @@ inline LatLong lat_long(const Vec3f& direction, UpAxis up) {
 /// @param u horizontal coordinate in [0, 1]
 /// @param height cosine of the angle from the zenith
 inline Vec3f lat_long_direction(float u, float height, UpAxis up) {
-  const float longitude = std::numbers::pi_v<float> * (1.0F - 2.0F * u);
+  const SinCos longitude = sincos_of_turn(u);  // from -z
   const float reach = std::sqrt(std::max(0.0F, (1.0F - height) * (1.0F + height)));
-  return from_y_up({reach * std::sin(longitude), height, reach * std::cos(longitude)}, up);
+  return from_y_up({reach * longitude.sine, height, -reach * longitude.cosine}, up);
 }
 
 /// An image of the whole sphere, read bilinearly and sampled by importance.
@@ -74,14 +82,19 @@ class ImageEnvironment {
     return {interpolate(x - 0.5F, y - 0.5F), texels_[texel(column, row)][kPdf]};
   }
 
-  /// A direction whose density is what `evaluate` returns.
-  Vec3f sample(float u0, float u1) const {
+  /// A direction drawn with its density.
+  LightDirection sample(float u0, float u1) const {
     const auto [row, column] = draws_.choose(u0, u1);
     const float top = row_heights_[row.index];
     const float bottom = row_heights_[row.index + 1];
-    const float u =
-        (static_cast<float>(column.index) + column.remainder) / static_cast<float>(width_);
-    return lat_long_direction(u, top + (bottom - top) * row.remainder, up_);
+    const float x = static_cast<float>(column.index) + column.remainder;
+    const float height = top + (bottom - top) * row.remainder;
+    const float reach = std::sqrt(std::max(0.0F, (1.0F - height) * (1.0F + height)));
+    const float y =
+        fast_atan2(reach, height) * std::numbers::inv_pi_v<float> * static_cast<float>(height_);
+    const std::size_t pixel = texel(static_cast<int>(column.index), static_cast<int>(row.index));
+    return {lat_long_direction(x / static_cast<float>(width_), height, up_),
+            {interpolate(x - 0.5F, y - 0.5F), texels_[pixel][kPdf]}};
   }
 
   /// Integral of the radiance over all directions.

@@ -159,33 +159,31 @@ void InfiniteLights::finish() {
   }
 }
 
-Channels InfiniteLights::plain_radiance(const Light& light, const Vec3f& towards,
-                                        const SpectrumValues& values, float& pdf) {
-  if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
-    const LightValue value = image->evaluate(towards);
-    pdf = value.pdf;
-    return values.illuminant(value.radiance) * light.scale;
-  }
-  if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
-    if (!sun->contains(towards)) return {};
-    pdf = sun->pdf();
-    return values.illuminant(sun->radiance()) * light.scale;
-  }
+Channels InfiniteLights::radiance_of(const Light& light, const LightValue& value,
+                                     const SpectrumValues& values) {
   if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
-    pdf = kUniformSpherePdf;
     return values[constant->radiance] * light.scale;
   }
-  const LightValue value = std::get_if<OctahedralEnvironment>(&light.radiance)->evaluate(towards);
-  pdf = value.pdf;
   return values.illuminant(value.radiance) * light.scale;
 }
 
-LightSeen InfiniteLights::evaluate_framed(const Light& light, const Vec3f& from,
-                                          const Vec3f& direction, const SpectrumValues& values) {
+LightValue InfiniteLights::plain_value(const Light& light, const Vec3f& towards) {
+  if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
+    return image->evaluate(towards);
+  }
+  if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
+    return sun->contains(towards) ? LightValue{sun->radiance(), sun->pdf()} : LightValue{};
+  }
+  if (std::holds_alternative<Constant>(light.radiance)) return {{}, kUniformSpherePdf};
+  return std::get_if<OctahedralEnvironment>(&light.radiance)->evaluate(towards);
+}
+
+void InfiniteLights::add_seen(const Light& light, const Vec3f& from, const Vec3f& direction,
+                              const SpectrumValues& values, LightSeen& all) {
   float portal_pdf = 0;
   if (light.portal) {
     portal_pdf = light.portal->pdf(from, direction);
-    if (portal_pdf == 0) return {};
+    if (portal_pdf == 0) return;
   }
   Vec3f towards = direction;
   float solid_angle = 1;
@@ -195,43 +193,27 @@ LightSeen InfiniteLights::evaluate_framed(const Light& light, const Vec3f& from,
     towards *= 1.0F / length;
     solid_angle = light.frame->light_solid_angle(length);
   }
-  LightSeen seen;
-  seen.radiance = plain_radiance(light, towards, values, seen.pdf);
-  seen.pdf = light.portal ? portal_pdf : seen.pdf * solid_angle;
-  return seen;
+  const LightValue value = plain_value(light, towards);
+  all.radiance += radiance_of(light, value, values);
+  all.pdf += light.share * (light.portal ? portal_pdf : value.pdf * solid_angle);
 }
 
 LightSeen InfiniteLights::evaluate(const Vec3f& from, const Vec3f& direction,
                                    const SpectrumValues& values) const {
   LightSeen all;
-  for (const Light& light : lights_) {
-    if (light.portal || light.frame) {
-      const LightSeen seen = evaluate_framed(light, from, direction, values);
-      all.radiance += seen.radiance;
-      all.pdf += light.share * seen.pdf;
-      continue;
-    }
-    float pdf = 0;
-    all.radiance += plain_radiance(light, direction, values, pdf);
-    all.pdf += light.share * pdf;
-  }
+  for (const Light& light : lights_) add_seen(light, from, direction, values, all);
   return all;
 }
 
-Vec3f InfiniteLights::sample_world(const Light& light, float u0, float u1) {
-  Vec3f direction;
+LightDirection InfiniteLights::sample_plain(const Light& light, float u0, float u1) {
   if (const auto* const octahedral = std::get_if<OctahedralEnvironment>(&light.radiance)) {
-    direction = octahedral->sample(u0, u1);
-  } else if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
-    direction = image->sample(u0, u1);
-  } else if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
-    direction = sun->sample(u0, u1);
-  } else {
-    direction = sample_sphere(u0, u1);
+    return octahedral->sample(u0, u1);
   }
-  if (!light.frame) return direction;
-  const Vec3f world = light.frame->to_world(direction);
-  return world * (1.0F / world.length());
+  if (const auto* const image = std::get_if<ImageEnvironment>(&light.radiance)) {
+    return image->sample(u0, u1);
+  }
+  const auto& sun = *std::get_if<Sun>(&light.radiance);  // all else is drawn through portals alone
+  return {sun.sample(u0, u1), {sun.radiance(), sun.pdf()}};
 }
 
 LightDraw InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values, float u0,
@@ -245,15 +227,28 @@ LightDraw InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values
     u2 -= light.share;
   }
   if (chosen == nullptr) return draw;
-  const Light& light = *chosen;
-  if (light.portal) {
-    const std::optional<Vec3f> direction = light.portal->sample(from, u0, u1);
+  LightSeen seen;
+  if (chosen->portal) {
+    const std::optional<Vec3f> direction = chosen->portal->sample(from, u0, u1);
     if (!direction) return draw;
     draw.direction = *direction;
+    add_seen(*chosen, from, draw.direction, values, seen);
   } else {
-    draw.direction = sample_world(light, u0, u1);
+    const LightDirection drawn = sample_plain(*chosen, u0, u1);
+    draw.direction = drawn.direction;
+    float solid_angle = 1;
+    if (chosen->frame) {
+      const Vec3f world = chosen->frame->to_world(drawn.direction);
+      const float per_length = 1.0F / world.length();
+      draw.direction = world * per_length;
+      solid_angle = chosen->frame->light_solid_angle(per_length);
+    }
+    seen.radiance = radiance_of(*chosen, drawn.light, values);
+    seen.pdf = chosen->share * drawn.light.pdf * solid_angle;
   }
-  const LightSeen seen = evaluate(from, draw.direction, values);
+  for (const Light& light : lights_) {
+    if (&light != chosen) add_seen(light, from, draw.direction, values, seen);
+  }
   draw.radiance = seen.radiance;
   draw.pdf = seen.pdf;
   return draw;

@@ -65,15 +65,18 @@ class InfiniteLights {
     bool is_drawn = true;
   };
 
-  /// Radiance of a light as if it had neither frame nor portal.
-  /// @param pdf set to the density of drawing the direction, if there is any [1/sr]
-  static Channels plain_radiance(const Light& light, const Vec3f& towards,
-                                 const SpectrumValues& values, float& pdf);
-  static LightSeen evaluate_framed(const Light& light, const Vec3f& from, const Vec3f& direction,
-                                   const SpectrumValues& values);
+  /// Radiance of a light in the channels.
+  static Channels radiance_of(const Light& light, const LightValue& value,
+                              const SpectrumValues& values);
+  /// What a light shows as if it had neither frame nor portal; of constant light the density alone.
+  static LightValue plain_value(const Light& light, const Vec3f& towards);
+  /// The same of a direction that is drawn.
+  static LightDirection sample_plain(const Light& light, float u0, float u1);
+  /// Adds what a light shows, its density times its share.
+  static void add_seen(const Light& light, const Vec3f& from, const Vec3f& direction,
+                       const SpectrumValues& values, LightSeen& all);
   /// Decides what of a light is drawn.
   void choose_draws(Light& light) const;
-  static Vec3f sample_world(const Light& light, float u0, float u1);
 
   std::vector<Light> lights_;
   bool is_drawn_ = false;

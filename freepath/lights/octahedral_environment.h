@@ -35,12 +35,15 @@ class OctahedralEnvironment {
     return {Spectrum(radiance_[texel(column, row)]), draws_.pdf(texel(column, row))};
   }
 
-  /// A direction whose density is what `evaluate` returns.
-  Vec3f sample(float u0, float u1) const {
+  /// A direction drawn with its density.
+  LightDirection sample(float u0, float u1) const {
     const auto [row, column] = draws_.choose(u0, u1);
-    const auto size = static_cast<float>(size_);
-    return direction_from_octahedral({(static_cast<float>(column.index) + column.remainder) / size,
-                                      (static_cast<float>(row.index) + row.remainder) / size});
+    const float scale = 1.0F / static_cast<float>(size_);
+    const std::size_t pixel = texel(static_cast<int>(column.index), static_cast<int>(row.index));
+    return {
+        direction_from_octahedral({(static_cast<float>(column.index) + column.remainder) * scale,
+                                   (static_cast<float>(row.index) + row.remainder) * scale}),
+        {Spectrum(radiance_[pixel]), draws_.pdf(pixel)}};
   }
 
   /// Luminance of the integral of the radiance over all directions.

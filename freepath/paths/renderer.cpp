@@ -93,7 +93,8 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   setup.seed = settings.walk.seed;
   setup.absorption = settings.walk.absorption;
   setup.max_scatterings = settings.max_scatterings;
-  setup.slots = std::max<std::size_t>(settings.batch, 1);
+  // Paths of different channels are walked apart.
+  setup.slots = std::max<std::size_t>(settings.batch, 1) * factory.paths_per_sample();
   const std::size_t pixels = static_cast<std::size_t>(window.width) * window.height;
   const auto prepare = [&](uint32_t first, uint32_t count) {
     prepare_colors(setup, first, count);

@@ -45,7 +45,8 @@ struct RenderSettings {
   std::function<double()> clock = {};
   /// Called between passes, by the thread that renders, with what there is.
   std::function<void(const Film&)> on_pass = {};
-  /// Paths in flight per thread; the picture does not depend on it.
+  /// Samples in flight per thread, of a path each, or one for each channel; the picture does not
+  /// depend on it.
   std::size_t batch = kPathsInFlight;
   WalkSettings walk;  ///< Its origin is that of the scene.
 };

@@ -89,7 +89,7 @@ TEST(OctahedralEnvironment, TheFluenceIsThatOfThePixels) {
   testing::RunningStatistics estimates;
   for (int i = 0; i < 200'000; ++i) {
     const float u0 = random.uniform();
-    const LightValue value = environment.evaluate(environment.sample(u0, random.uniform()));
+    const LightValue value = environment.sample(u0, random.uniform()).light;
     estimates.add(kWeights.dot(Vec3f(value.radiance.x, value.radiance.y, value.radiance.z)) /
                   value.pdf);
   }

@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(All, ReferenceScene,
                          ::testing::Values(Reference{"wdas_sun", 32}, Reference{"wdas_env", 32},
                                            Reference{"wdas_chroma", 24},
                                            Reference{"smoke_floor", 64}, Reference{"fireball", 96},
-                                           Reference{"fog_spot", 96}, Reference{"glass_jar", 48},
+                                           Reference{"fog_spot", 768}, Reference{"glass_jar", 48},
                                            Reference{"rgbgrid", 96}),
                          [](const auto& param) { return std::string(param.param.name); });
 
