@@ -207,7 +207,9 @@ void add_method_options(CLI::App& command, RenderOptions& o) {
       ->group("Method");
   command
       .add_option("--transmittance", o.transmittance,
-                  "Transmittance of shadow rays: " + method_names(transmittance_infos()))
+                  "Transmittance of shadow rays: " + method_names(transmittance_infos()) +
+                      "; where none is named, homogeneous media of scenes have residual-ratio, "
+                      "which is exact there")
       ->capture_default_str()
       ->group("Method");
   command.add_option("--interpolation", o.interpolation, "nearest, trilinear or stochastic")

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -44,6 +45,18 @@ std::string complaint(const std::vector<Component>& components) {
     return error.what();
   }
   return {};
+}
+
+TEST(Medium, HasNoSpreadOfBoundsWhereItEndsAtTheMiddlesOfEqualVoxels) {
+  const auto share_of_minima = [](const std::function<float(const Vec3i&)>& density) {
+    const Medium medium({component_of(make_field(Vec3i(0), Vec3i(2), density))});
+    EXPECT_EQ(summarize(medium.super_voxels()).mean_minimum, 0) << "it fades beyond";
+    const SuperVoxelSummary cells = summarize(medium.clipped_to_middles().super_voxels());
+    EXPECT_GT(cells.mean_maximum, 0);
+    return cells.mean_minimum / cells.mean_maximum;
+  };
+  EXPECT_EQ(share_of_minima([](const Vec3i&) { return 0.7F; }), 1);
+  EXPECT_EQ(share_of_minima([](const Vec3i& p) { return p == Vec3i(1) ? 0.8F : 0.7F; }), 0);
 }
 
 TEST(Medium, RefusesCoefficientsThatAreNegativeOrNotFinite) {

@@ -161,5 +161,32 @@ TEST(SceneClosedForm, LightOfAPointScatteredOnce) {
   }
 }
 
+// The least extinction is all there is: what it lets through is known, unless an estimator is
+// named, and trackers with a control decide without a look-up.
+TEST(SceneClosedForm, HomogeneousMediaAreKnownWithoutLookUps) {
+  const auto render = [](const std::string& method, bool chooses) {
+    Diagnostics diagnostics;
+    const BuiltScene built = build_scene(
+        parse("Integrator \"volpath\" " + method + "\n" + film(8) +
+                  R"(LookAt 0 0 -4  0 0 0  0 1 0 Camera "perspective" "float fov" 30 WorldBegin
+                  LightSource "distant" "rgb L" [ 3 3 3 ] "point3 from" [ 0 1 -.5 ]
+                  MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [ .2 .3 .4 ]
+                  "rgb sigma_s" [ 4 4 4 ] AttributeBegin Material "interface"
+                  MediumInterface "m" "" Shape "sphere" AttributeEnd)",
+              diagnostics),
+        diagnostics);
+    RenderSettings settings = settings_of(built, {.samples = 16});
+    settings.chooses_transmittance = chooses;
+    return render_scene(built.scene, ColorMode::kRgb, settings);
+  };
+  const RenderResult chosen = render("", true);
+  EXPECT_GT(chosen.shadow_rays.rays, 1000U);
+  EXPECT_EQ(chosen.shadow_rays.tentative_collisions, 0U);
+  EXPECT_GT(render("", false).shadow_rays.tentative_collisions, 0U) << "of ratio tracking";
+  const WalkStatistics flights = render(R"("string tracker" "decomposition")", true).free_paths;
+  EXPECT_GT(flights.real_collisions, 1000U);
+  EXPECT_EQ(flights.lookups, 0U);
+}
+
 }  // namespace
 }  // namespace freepath::testing
