@@ -393,12 +393,4 @@ CaseResult measure(const CertifiedCase& test, const CertifyBudget& budget) {
   return Measurement(test, budget).run();
 }
 
-double largest_z(const CaseResult& result) {
-  double largest = 0;
-  for (const Check& check : result.checks) {
-    if (check.standing == Standing::kTested) largest = std::max(largest, check.z);
-  }
-  return largest;
-}
-
 }  // namespace freepath::testing

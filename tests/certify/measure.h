@@ -1,6 +1,7 @@
 #pragma once
 /// @file One case of the certifying suite: walk it, and compare with quadrature.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -53,6 +54,12 @@ struct CaseResult {
 CaseResult measure(const CertifiedCase& test, const CertifyBudget& budget);
 
 /// Largest |z| among the checks that count.
-double largest_z(const CaseResult& result);
+inline double largest_z(const CaseResult& result) {
+  double largest = 0;
+  for (const Check& check : result.checks) {
+    if (check.standing == Standing::kTested) largest = std::max(largest, check.z);
+  }
+  return largest;
+}
 
 }  // namespace freepath::testing
