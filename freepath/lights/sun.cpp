@@ -35,7 +35,7 @@ Spectrum direct_sun_irradiance(double elevation, double turbidity) {
 }
 
 Sun::Sun(const SunParameters& parameters, UpAxis up)
-    : direction_(sky_direction(parameters.elevation, parameters.azimuth, up)) {
+    : direction_(sky_direction(parameters.elevation, parameters.azimuth, up)), frame_(direction_) {
   if (!(parameters.elevation >= -90 && parameters.elevation <= 90)) {
     fail("the sun's elevation is {} degrees; it must lie in [-90, 90]", parameters.elevation);
   }

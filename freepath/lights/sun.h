@@ -70,8 +70,7 @@ class Sun {
     const float drop = u0 * 0.5F * largest_distance2();  // 1 - cosine
     const float sine = std::sqrt(drop * (2.0F - drop));
     const SinCos azimuth = sincos_of_turn(u1);
-    const TangentFrame frame(direction_);
-    const Vec3f towards = frame.to_world(sine * azimuth.cosine, sine * azimuth.sine, 1.0F - drop);
+    const Vec3f towards = frame_.to_world(sine * azimuth.cosine, sine * azimuth.sine, 1.0F - drop);
     if (contains(towards)) return towards;
     // Rounding put a point of the edge outside, by some 1e-5 of the radius.
     const Vec3f inside = direction_ + (towards - direction_) * 0.9999F;
@@ -85,6 +84,7 @@ class Sun {
   static constexpr float kSineOfHalfRadius = 2.3256491e-3F;  // sin(0.2665° / 2)
 
   Vec3f direction_;
+  TangentFrame frame_;  // around it
   Spectrum irradiance_;
   Spectrum radiance_;
 };

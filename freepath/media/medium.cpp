@@ -54,8 +54,8 @@ void check_component(const Component& component, const Component& first, std::si
 
 /// Whether all voxels in the bounds of the active ones have one value.
 bool is_uniform(const BrickMap& voxels) {
-  const Vec3i first = voxels.active_min();
-  const Vec3i last = voxels.active_max();
+  const Vec3i& first = voxels.active_min();
+  const Vec3i& last = voxels.active_max();
   const float value = voxels.value(first);
   for (int x = first.x; x <= last.x; ++x) {
     for (int y = first.y; y <= last.y; ++y) {

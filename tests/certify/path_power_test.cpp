@@ -98,7 +98,7 @@ FilmMean surface_furnace(uint32_t samples, uint64_t seed) {
 /// Fog under a sky that is drawn, with shadow rays by roulette, and another that is found by
 /// chance.
 FilmMean sky_furnace(uint32_t samples, uint64_t seed) {
-  static const TwoSkies skies;
+  static const TwoSkies kSkies;
   const std::string fog =
       R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 2 2 2 ] )"
       R"("rgb sigma_a" [ 0 0 0 ])"
@@ -106,7 +106,7 @@ FilmMean sky_furnace(uint32_t samples, uint64_t seed) {
   const std::string text =
       kUnlimited + film(8) +
       "LookAt 0.2 0.1 -4  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 7\nWorldBegin\n" +
-      skies.lights() + fog + medium_box("fog", Vec3d(-1), Vec3d(1));
+      kSkies.lights() + fog + medium_box("fog", Vec3d(-1), Vec3d(1));
   return mean_of(render_text(text, {.samples = samples, .seed = seed}).image);
 }
 

@@ -23,7 +23,10 @@ struct Reference {
   uint32_t samples;
 };
 
-void PrintTo(const Reference& reference, std::ostream* out) { *out << reference.name; }
+void PrintTo(const Reference& reference,
+             std::ostream* out) {  // NOLINT(readability-identifier-naming)
+  *out << reference.name;
+}
 
 constexpr double kLargestDifference = 5e-3;
 constexpr int kBlock = 16;
