@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,6 +83,9 @@ struct DistantLight {
   std::optional<double> illuminance = {};  ///< In its place.
   Vec3d from{0, 0, 0}, to{0, 0, 1};        ///< The light travels from here to there.
   Matrix4d light_to_world = {};
+  /// Way from the light to whatever it shines on [world]: finite where fog fills all space, which
+  /// would let nothing through.
+  float distance = std::numeric_limits<float>::infinity();
 };
 
 /// The same intensity in all directions.

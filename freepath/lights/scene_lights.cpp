@@ -89,7 +89,7 @@ void SceneLights::add(const DistantLight& light, const SpectrumTable& table) {
   const double illuminance = factor * brightness(spectrum);
   if (!(illuminance > 0)) return;
   distant_.push_back({Vec3f(towards.normalized()), light.radiance, static_cast<float>(factor),
-                      static_cast<float>(illuminance)});
+                      static_cast<float>(illuminance), light.distance});
 }
 
 SceneLights::Emission SceneLights::make_emission(const AreaEmission& description) {
@@ -192,6 +192,7 @@ LightDraw SceneLights::sample_distant(const SpectrumValues& values, float u) con
   const Distant& light = distant_[chosen];
   LightDraw draw;
   draw.direction = light.towards;
+  draw.distance = light.distance;
   draw.radiance = values[light.radiance] * light.scale;
   draw.pdf = light.share;
   draw.delta = true;

@@ -66,6 +66,7 @@ class SceneLights {
     SpectrumId radiance;
     float scale;
     float share;  // probability among parallel lights
+    float distance;
   };
   struct Emission {
     SpectrumId radiance;

@@ -161,6 +161,24 @@ TEST(SceneClosedForm, LightOfAPointScatteredOnce) {
   }
 }
 
+// Fog without an end lets light through that comes from twice the scene's radius, as in pbrt.
+TEST(SceneClosedForm, ParallelLightInFogWithoutAnEnd) {
+  const double diagonal = std::hypot(6, 8);
+  for (const ColorMode mode : {ColorMode::kRgb, ColorMode::kSpectral}) {
+    const Picture picture =
+        render_text(kUnlimited + film(8) + R"(LookAt 0 2 0  0 0 0  0 0 1 MediumInterface "" "fog"
+        Camera "perspective" "float fov" 1 WorldBegin
+        MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ .1 .1 .1 ]
+        "rgb sigma_s" [ 0 0 0 ] MediumInterface "" "fog"
+        LightSource "distant" "rgb L" [ 3 3 3 ] "point3 from" [ 0 1 0 ] "point3 to" [ 0 0 0 ]
+        Material "diffuse" "rgb reflectance" [ .5 .5 .5 ]
+        Shape "bilinearmesh" "point3 P" [ -3 0 -4  3 0 -4  -3 0 4  3 0 4 ])",
+                    {.mode = mode, .samples = 256});
+    const double expected = 0.5 / std::numbers::pi * 3 * std::exp(-0.1 * (diagonal + 2));
+    expect_mean("fog", picture, {expected, expected, expected}, {.largest_relative_error = 0.01});
+  }
+}
+
 // The least extinction is all there is: what it lets through is known, unless an estimator is
 // named, and trackers with a control decide without a look-up.
 TEST(SceneClosedForm, HomogeneousMediaAreKnownWithoutLookUps) {

@@ -44,6 +44,24 @@ Vec3d origin_of(const PathScene& scene, const Box3d& extent) {
   return (box.isEmpty() ? extent : box).center();
 }
 
+/// Lets parallel light begin at twice the radius of the scene from what it shines on, as pbrt does,
+/// if homogeneous fog is around the camera: where it has no end, nothing would come through. Where
+/// it has one, that lies nearer.
+/// @param standing around all shapes and all media with bounds of their own
+void bring_near_in_fog(const PathScene& scene, const Box3d& standing,
+                       std::vector<LightDescription>& lights) {
+  const bool is_in_fog =
+      std::ranges::any_of(scene.camera_media.entries(), [&](const MediaSet::Entry& entry) {
+        return scene.media[static_cast<std::size_t>(entry.medium)].is_homogeneous();
+      });
+  if (!is_in_fog || standing.isEmpty()) return;
+  for (LightDescription& light : lights) {
+    if (auto* const distant = std::get_if<DistantLight>(&light)) {
+      distant->distance = static_cast<float>(standing.size().length());
+    }
+  }
+}
+
 /// Adds lights from outside of the file, which take the place of some of its own.
 void add_surroundings(const Surroundings& surroundings, std::vector<LightDescription>& lights,
                       SpectrumTable& table) {
@@ -135,7 +153,11 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   lights.emissions = shapes.emissions;
   lights.area_lights = build_area_lights(shapes, scene.origin);
   lights.origin = scene.origin;
-  if (options.sides.any()) check_lights_of_domain(lights);
+  if (options.sides.any()) {
+    check_lights_of_domain(lights);
+  } else {
+    bring_near_in_fog(scene, standing, lights.lights);
+  }
   scene.lights.emplace(std::move(lights), *scene.spectra);
   const SurfaceScene surfaces = options.sides.any() ? shapes.surfaces : SurfaceScene();
   simplify_regions(std::move(shapes.surfaces), scene, stood);
