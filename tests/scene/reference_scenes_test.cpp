@@ -23,10 +23,8 @@ struct Reference {
   uint32_t samples;
 };
 
-void PrintTo(const Reference& reference,
-             std::ostream* out) {  // NOLINT(readability-identifier-naming)
-  *out << reference.name;
-}
+// NOLINTNEXTLINE(readability-identifier-naming)
+void PrintTo(const Reference& reference, std::ostream* out) { *out << reference.name; }
 
 constexpr double kLargestDifference = 5e-3;
 constexpr int kBlock = 16;
