@@ -155,7 +155,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   lights.origin = scene.origin;
   if (options.sides.any()) {
     check_lights_of_domain(lights);
-  } else {
+  } else if (!options.ground) {  // which reaches further than all else, and is shaded from afar
     bring_near_in_fog(scene, standing, lights.lights);
   }
   scene.lights.emplace(std::move(lights), *scene.spectra);
