@@ -103,8 +103,9 @@ class ImageEnvironment {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// How directions are drawn.
+  /// Tables by which `sample` draws directions.
   const PixelDraws& draws() const { return draws_; }
+  /// Replaces them; `evaluate` then gives their densities.
   void set_draws(PixelDraws draws);
 
  private:

@@ -68,9 +68,10 @@ class InfiniteLights {
   /// Radiance of a light in the channels.
   static Channels radiance_of(const Light& light, const LightValue& value,
                               const SpectrumValues& values);
-  /// What a light shows as if it had neither frame nor portal; of constant light the density alone.
+  /// Radiance and density that a light has as if it had neither frame nor portal; of constant light
+  /// the density alone.
   static LightValue plain_value(const Light& light, const Vec3f& towards);
-  /// The same of a direction that is drawn.
+  /// Direction drawn of such a light, with both.
   static LightDirection sample_plain(const Light& light, float u0, float u1);
   /// Adds what a light shows, its density times its share.
   static void add_seen(const Light& light, const Vec3f& from, const Vec3f& direction,

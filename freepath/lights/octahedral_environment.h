@@ -50,8 +50,9 @@ class OctahedralEnvironment {
   double fluence() const { return fluence_; }
   int size() const { return size_; }
 
-  /// How directions are drawn.
+  /// Tables by which `sample` draws directions.
   const PixelDraws& draws() const { return draws_; }
+  /// Replaces them; `evaluate` then gives their densities.
   void set_draws(PixelDraws draws) { draws_ = std::move(draws); }
 
  private:

@@ -57,7 +57,7 @@ double PixelDraws::gain_above_mean() const {
   const double all = mean_of(excess);
   if (all == 0) return 0;
   const auto density = [&](double brightness) { return excess(brightness) / all; };
-  // What either way brings of a direction, by the balance heuristic.
+  // Part that either way brings of a direction, by the balance heuristic.
   const auto part = [&](double brightness) { return brightness / (1 + density(brightness)); };
   const double by_chance = mean_of(part);
   const double squared_by_chance =
@@ -66,7 +66,7 @@ double PixelDraws::gain_above_mean() const {
       mean_of([&](double brightness) { return density(brightness) * part(brightness); });
   const double squared_drawn = mean_of(
       [&](double brightness) { return density(brightness) * part(brightness) * part(brightness); });
-  // Of two draws, each lit with a chance of 1/2.
+  // Variance of two draws, each lit with a chance of 1/2.
   const double variance_drawn = squared_drawn - drawn * drawn / 2;
   const double without = mean_of([](double brightness) { return brightness * brightness; }) - 1;
   return without / (squared_by_chance - by_chance * by_chance + variance_drawn);

@@ -34,10 +34,10 @@ class PixelDraws {
   /// themselves, with which multiple importance sampling shares: its compensation [Karlik19], with
   /// the mean as the constant.
   PixelDraws above_mean() const;
-  /// How many times smaller the variance is where above_mean() is drawn than where nothing is: of a
-  /// path that scatters twice, isotropically, before it leaves, and draws light both times, half of
-  /// which is in shadow. Brightness is what this draws in proportion to; 0 where all directions are
-  /// equally bright.
+  /// Variance where nothing is drawn over that where above_mean() is: of a path that scatters
+  /// twice, isotropically, before it leaves, and draws light both times, half of which is in
+  /// shadow. Brightness is what this draws in proportion to; 0 where all directions are equally
+  /// bright.
   double gain_above_mean() const;
 
  private:
