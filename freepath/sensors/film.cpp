@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "freepath/base/error.h"
 #include "freepath/base/moments.h"
@@ -21,10 +22,6 @@ bool all_finite(const PathSample& sample) {
 float to_float(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
-}
-
-void add_to(double* sums, const Spectrum& value) {
-  for (int channel = 0; channel < kChannels; ++channel) sums[channel] += value[channel];
 }
 
 }  // namespace
@@ -52,18 +49,38 @@ Film::SumPlaces Film::places_of(LayerSet layers, int& count) {
 std::size_t Film::bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets) {
   int sums = 0;
   places_of(layers, sums);
-  return sizeof(Pixel) + sums * sizeof(double) + buckets.count * sizeof(BucketSum);
+  return sizeof(Pixel) + sums * (sizeof(Sum2::Array) + 1) + buckets.count * sizeof(BucketSum);
 }
 
-Film::Film(const PixelWindow& window, LayerSet layers, const WavelengthBuckets& buckets)
-    : window_(window), layers_(layers), buckets_(buckets) {
+Film::Film(const PixelWindow& window, LayerSet layers, const WavelengthBuckets& buckets,
+           uint32_t first_sample)
+    : window_(window), layers_(layers), first_sample_(first_sample), buckets_(buckets) {
   if (window.width < 1 || window.height < 1) {
     fail("the film has {}x{} pixels; it needs at least 1x1", window.width, window.height);
   }
   pixels_.resize(static_cast<std::size_t>(window.width) * window.height);
   places_ = places_of(layers, sums_per_pixel_);
   sums_.resize(pixels_.size() * sums_per_pixel_);
+  sum_tops_.resize(sums_.size(), Sum2::kEmpty);
   bucket_sums_.resize(pixels_.size() * buckets.count);
+}
+
+double Film::Pixel::square(int channel) const {
+  if (overflows > 0) return std::numeric_limits<double>::infinity();
+  return Sum3::value(squares[channel], square_tops[channel]);
+}
+
+void Film::add_to(std::size_t pixel, Sum which, const Spectrum& value) {
+  if (places_[which] < 0) return;
+  const std::size_t first = pixel * sums_per_pixel_ + places_[which];
+  for (int channel = 0; channel < kChannels; ++channel) {
+    Sum2::add(sums_[first + channel], sum_tops_[first + channel], value[channel]);
+  }
+}
+
+double Film::sum_of(std::size_t pixel, Sum which, int channel) const {
+  const std::size_t place = pixel * sums_per_pixel_ + places_[which] + channel;
+  return Sum2::value(sums_[place], sum_tops_[place]);
 }
 
 void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample) {
@@ -72,32 +89,30 @@ void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& l
     ++sums.non_finite;
     return;
   }
-  if (places_[kEven] >= 0 && sums.samples % 2 == 0) add_to(sums_of(pixel, kEven), sample.radiance);
+  const bool is_even = (first_sample_ + sums.samples) % 2 == 0;
+  if (is_even) add_to(pixel, kEven, sample.radiance);
   if (layers_.has_any(kPathLayers)) add_layers(pixel, layer_sample);
   for (int channel = 0; channel < kChannels; ++channel) {
     const double value = sample.radiance[channel];
-    sums.radiance[channel] += value;
-    sums.squares[channel] += value * value;
-    sums.albedo[channel] += sample.albedo[channel];
-    if (sample.overflowed) sums.squares[channel] = std::numeric_limits<double>::infinity();
+    sums.add(kRadiance + channel, value);
+    Sum3::add(sums.squares[channel], sums.square_tops[channel], value * value);
+    sums.add(kAlbedo + channel, sample.albedo[channel]);
   }
-  sums.alpha += sample.alpha;
-  sums.depth += static_cast<double>(sample.depth) * sample.depth_weight;
-  sums.depth_weight += sample.depth_weight;
-  sums.lookups += sample.lookups;
+  sums.add(kAlpha, sample.alpha);
+  sums.add(kDepth, static_cast<double>(sample.depth) * sample.depth_weight);
+  sums.add(kDepthWeight, sample.depth_weight);
+  sums.lookups += static_cast<uint64_t>(sample.lookups);
+  if (sample.overflowed) ++sums.overflows;
   ++sums.samples;
 }
 
 void Film::add_layers(std::size_t pixel, const LayerSample& sample) {
-  const auto add = [&](Sum which, const Spectrum& value) {
-    if (places_[which] >= 0) add_to(sums_of(pixel, which), value);
-  };
-  add(kNormal, sample.normal);
-  add(kPosition, sample.position);
-  add(kTransmittance, sample.transmittance);
-  add(kBackground, sample.background);
-  add(kUnscattered, sample.unscattered);
-  add(kAtMostOnce, sample.at_most_once);
+  add_to(pixel, kNormal, sample.normal);
+  add_to(pixel, kPosition, sample.position);
+  add_to(pixel, kTransmittance, sample.transmittance);
+  add_to(pixel, kBackground, sample.background);
+  add_to(pixel, kUnscattered, sample.unscattered);
+  add_to(pixel, kAtMostOnce, sample.at_most_once);
 }
 
 void Film::add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
@@ -106,8 +121,35 @@ void Film::add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
     const int bucket = buckets_.bucket_of(wavelengths[i]);
     if (bucket < 0) continue;
     BucketSum& sum = bucket_sums_[pixel * buckets_.count + bucket];
-    sum.radiance += radiance[static_cast<int>(i)];
-    sum.samples += 1;
+    Sum2::add(sum.radiance, sum.top, radiance[static_cast<int>(i)]);
+    ++sum.samples;
+  }
+}
+
+void Film::merge_pixel(std::size_t pixel, const Film& other, std::size_t other_pixel) {
+  Pixel& sums = pixels_[pixel];
+  const Pixel& more = other.pixels_[other_pixel];
+  for (int i = 0; i < kPixelSums; ++i) {
+    Sum2::merge(sums.sums[i], sums.tops[i], more.sums[i], more.tops[i]);
+  }
+  for (int i = 0; i < kChannels; ++i) {
+    Sum3::merge(sums.squares[i], sums.square_tops[i], more.squares[i], more.square_tops[i]);
+  }
+  sums.lookups += more.lookups;
+  sums.samples += more.samples;
+  sums.non_finite += more.non_finite;
+  sums.overflows += more.overflows;
+  const std::size_t first = pixel * sums_per_pixel_;
+  const std::size_t other_first = other_pixel * sums_per_pixel_;
+  for (int i = 0; i < sums_per_pixel_; ++i) {
+    Sum2::merge(sums_[first + i], sum_tops_[first + i], other.sums_[other_first + i],
+                other.sum_tops_[other_first + i]);
+  }
+  for (int i = 0; i < buckets_.count; ++i) {
+    BucketSum& bucket = bucket_sums_[pixel * buckets_.count + i];
+    const BucketSum& added = other.bucket_sums_[other_pixel * buckets_.count + i];
+    Sum2::merge(bucket.radiance, bucket.top, added.radiance, added.top);
+    bucket.samples += added.samples;
   }
 }
 
@@ -131,56 +173,103 @@ Film::NonFinite Film::non_finite_samples() const {
   return result;
 }
 
+double Film::mean(std::size_t pixel, int channel) const {
+  const Pixel& sums = pixels_[pixel];
+  return sums.value(kRadiance + channel) / std::max(1U, sums.samples);
+}
+
+double Film::variance(std::size_t pixel, int channel) const {
+  const Pixel& sums = pixels_[pixel];
+  const uint32_t n = std::max(1U, sums.samples);
+  return Moments{sums.value(kRadiance + channel), sums.square(channel)}.variance(n) / n;
+}
+
 void Film::put_layer(Layer layer, std::size_t pixel, std::vector<float>& values) const {
   const Pixel& sums = pixels_[pixel];
   const double n = std::max(1U, sums.samples);
   const auto put = [&](double value) { values.push_back(to_float(value)); };
-  const auto put_sum = [&](Sum which, double count) {
-    for (int c = 0; c < kChannels; ++c) put(count != 0 ? sums_of(pixel, which)[c] / count : 0);
+  const auto put_each = [&](const auto& value_of) {
+    for (int c = 0; c < kChannels; ++c) put(value_of(c));
   };
-  const auto put_difference = [&](const double* all, Sum part) {
-    for (int c = 0; c < kChannels; ++c) put((all[c] - sums_of(pixel, part)[c]) / n);
+  const auto put_sum = [&](Sum which, double count) {
+    put_each([&](int c) { return count != 0 ? sum_of(pixel, which, c) / count : 0; });
+  };
+  const auto put_difference = [&](Sum all, Sum part) {
+    put_each([&](int c) { return (sum_of(pixel, all, c) - sum_of(pixel, part, c)) / n; });
   };
   switch (layer) {
     case Layer::kAlbedo:
-      for (const double albedo : sums.albedo) put(albedo / n);
-      return;
-    case Layer::kDepth:
-      return put(sums.depth_weight != 0 ? sums.depth / sums.depth_weight : 0);
+      return put_each([&](int c) { return sums.value(kAlbedo + c) / n; });
+    case Layer::kDepth: {
+      const double weight = sums.value(kDepthWeight);
+      return put(weight != 0 ? sums.value(kDepth) / weight : 0);
+    }
     case Layer::kLookups:
-      return put(sums.lookups / n);
+      return put(static_cast<double>(sums.lookups) / n);
     case Layer::kVariance:
-      for (int c = 0; c < kChannels; ++c) {
-        // As a float it may be infinite, and then says so.
-        const Moments moments{sums.radiance[c], sums.squares[c]};
-        values.push_back(static_cast<float>(moments.variance(std::max(sums.samples, 1U)) / n));
-      }
+      // As a float it may be infinite, and then says so.
+      for (int c = 0; c < kChannels; ++c) values.push_back(static_cast<float>(variance(pixel, c)));
       return;
     case Layer::kSamples:
       return put(sums.samples);
     case Layer::kNormal:
       return put_sum(kNormal, n);
     case Layer::kPosition:
-      return put_sum(kPosition, sums.depth_weight);
+      return put_sum(kPosition, sums.value(kDepthWeight));
     case Layer::kTransmittance:
       return put_sum(kTransmittance, n);
     case Layer::kBackground:
       return put_sum(kBackground, n);
     case Layer::kEmission:
-      return put_difference(sums_of(pixel, kUnscattered), kBackground);
+      return put_difference(kUnscattered, kBackground);
     case Layer::kDirect:
-      return put_difference(sums_of(pixel, kAtMostOnce), kUnscattered);
+      return put_difference(kAtMostOnce, kUnscattered);
     case Layer::kIndirect:
-      return put_difference(sums.radiance, kAtMostOnce);
+      return put_each(
+          [&](int c) { return (sums.value(kRadiance + c) - sum_of(pixel, kAtMostOnce, c)) / n; });
     case Layer::kHalves: {
-      const uint32_t odd = sums.samples / 2;
-      put_sum(kEven, sums.samples - odd);
-      for (int c = 0; c < kChannels; ++c) {
-        put(odd > 0 ? (sums.radiance[c] - sums_of(pixel, kEven)[c]) / odd : 0);
-      }
-      return;
+      // Samples are numbered from first_sample_ on.
+      const uint32_t even = (sums.samples + 1 - first_sample_ % 2) / 2;
+      const uint32_t odd = sums.samples - even;
+      put_sum(kEven, even);
+      return put_each([&](int c) {
+        return odd > 0 ? (sums.value(kRadiance + c) - sum_of(pixel, kEven, c)) / odd : 0;
+      });
     }
   }
+}
+
+template <class Self, class Bytes>
+std::vector<Bytes> Film::blocks_of(Self& film) {
+  const auto bytes = [](auto& values) {
+    const std::span all(values);
+    if constexpr (std::is_const_v<typename Bytes::element_type>) {
+      return std::as_bytes(all);
+    } else {
+      return std::as_writable_bytes(all);
+    }
+  };
+  return {bytes(film.pixels_), bytes(film.sums_), bytes(film.sum_tops_), bytes(film.bucket_sums_)};
+}
+
+std::vector<std::span<std::byte>> Film::sums_in_memory() {
+  return blocks_of<Film, std::span<std::byte>>(*this);
+}
+
+std::vector<std::span<const std::byte>> Film::sums_in_memory() const {
+  return blocks_of<const Film, std::span<const std::byte>>(*this);
+}
+
+void Film::check_sums() const {
+  const auto check = [](int8_t top) {
+    if (top < Sum2::kLowest || top > Sum2::kHighest) fail("its sums are damaged");
+  };
+  for (const Pixel& pixel : pixels_) {
+    for (const int8_t top : pixel.tops) check(top);
+    for (const int8_t top : pixel.square_tops) check(top);
+  }
+  for (const int8_t top : sum_tops_) check(top);
+  for (const BucketSum& bucket : bucket_sums_) check(bucket.top);
 }
 
 Image Film::to_image(LayerSet layers) const {
@@ -204,12 +293,13 @@ Image Film::to_image(LayerSet layers) const {
   for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
     const Pixel& sums = pixels_[pixel];
     const double n = std::max(1U, sums.samples);
-    for (const double radiance : sums.radiance) image.values.push_back(to_float(radiance / n));
-    image.values.push_back(to_float(sums.alpha / n));
+    for (int c = 0; c < kChannels; ++c) image.values.push_back(to_float(mean(pixel, c)));
+    image.values.push_back(to_float(sums.value(kAlpha) / n));
     for (const Layer layer : chosen) put_layer(layer, pixel, image.values);
     for (int i = 0; i < buckets_.count; ++i) {
       const BucketSum& sum = bucket_sums_[pixel * buckets_.count + i];
-      image.values.push_back(sum.samples > 0 ? to_float(sum.radiance / sum.samples) : 0.0F);
+      const double radiance = Sum2::value(sum.radiance, sum.top);
+      image.values.push_back(sum.samples > 0 ? to_float(radiance / sum.samples) : 0.0F);
     }
   }
   return image;

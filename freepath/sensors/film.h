@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "freepath/base/binned_sum.h"
 #include "freepath/base/channels.h"
 #include "freepath/base/spectrum.h"
 #include "freepath/io/image.h"
@@ -51,30 +52,43 @@ struct LayerSample {
   }
 };
 
-/// Sums over the paths of each pixel, in double precision.
+/// Samples of pixels, by their numbers: [first, first + count).
+struct SampleRange {
+  uint32_t first = 0;
+  uint32_t count = 0;
+
+  uint32_t end() const { return first + count; }
+  bool operator==(const SampleRange&) const = default;
+};
+
+/// Sums over the paths of each pixel.
 ///
-/// A pixel's samples must be added in the order of their numbers, by one thread at a time;
-/// different pixels may be added to at the same time. Then the picture does not depend on threads
-/// or batches.
+/// Sums don't depend on the order in which samples come, nor on how they are shared out among films
+/// that are merged (BinnedSum). A pixel's samples are numbered from the film's first one on, as
+/// they are added, by one thread at a time; different pixels may be added to at the same time.
 class Film {
  public:
+  /// @param first_sample number of the first sample of each pixel
   /// @throws Error for an empty film
   explicit Film(const PixelWindow& window, LayerSet layers = LayerSet::standard(),
-                const WavelengthBuckets& buckets = {});
+                const WavelengthBuckets& buckets = {}, uint32_t first_sample = 0);
   Film(int width, int height) : Film(PixelWindow::whole(width, height)) {}
 
   int width() const { return window_.width; }
   int height() const { return window_.height; }
+  std::size_t pixel_count() const { return pixels_.size(); }
   const PixelWindow& window() const { return window_; }
   /// What it records, which takes memory.
   LayerSet layers() const { return layers_; }
   const WavelengthBuckets& buckets() const { return buckets_; }
+  uint32_t first_sample() const { return first_sample_; }
   static std::size_t bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets = {});
 
   /// Of the space of R, G and B; sRGB's where none are set. Its pictures carry them.
   void set_chromaticities(const std::optional<RgbChromaticities>& chromaticities) {
     chromaticities_ = chromaticities;
   }
+  const std::optional<RgbChromaticities>& chromaticities() const { return chromaticities_; }
 
   /// Adds the next sample of a pixel.
   ///
@@ -90,6 +104,10 @@ class Film {
   /// @param radiance finite
   void add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
                     const Channels& radiance);
+
+  /// Adds the samples of a pixel of another film, which are other ones than its own.
+  /// @param other with the same layers and buckets
+  void merge_pixel(std::size_t pixel, const Film& other, std::size_t other_pixel);
 
   /// Samples of a pixel that were added.
   uint32_t samples(std::size_t pixel) const { return pixels_[pixel].samples; }
@@ -107,6 +125,11 @@ class Film {
   };
   NonFinite non_finite_samples() const;
 
+  /// The variance of the mean of a pixel's channel, as to_image() has it.
+  double variance(std::size_t pixel, int channel) const;
+  /// The mean of a pixel's channel.
+  double mean(std::size_t pixel, int channel) const;
+
   /// The picture: R, G, B, A and the layers (layer_infos()).
   ///
   /// A is 1 - transmittance. depth.Z is the mean distance to the first scatter, 0 where no path
@@ -123,18 +146,41 @@ class Film {
   /// With these layers alone, of those that it has.
   Image to_image(LayerSet layers) const;
 
+  /// Blocks of memory that hold its sums, always the same ones in the same order for films of the
+  /// same size, layers and buckets: to be written to a file, or to be read from one.
+  std::vector<std::span<std::byte>> sums_in_memory();
+  std::vector<std::span<const std::byte>> sums_in_memory() const;
+  /// @throws Error where sums that were read can't be sums
+  void check_sums() const;
+
  private:
+  using Sum2 = BinnedSum<2>;
+  /// Squares have twice as many digits as what they are of, and a variance is their difference.
+  using Sum3 = BinnedSum<3>;
+
+  /// Sums that every pixel has.
+  enum PixelSum { kRadiance = 0, kAlbedo = 3, kAlpha = 6, kDepth, kDepthWeight, kPixelSums };
+
   struct Pixel {
-    double radiance[3] = {};
-    double squares[3] = {};
-    double alpha = 0;
-    double albedo[3] = {};
-    double depth = 0;
-    double depth_weight = 0;
-    double lookups = 0;
+    std::array<Sum2::Array, kPixelSums> sums = {};
+    std::array<Sum3::Array, kChannels> squares = {};
+    uint64_t lookups = 0;
     uint32_t samples = 0;
     uint32_t non_finite = 0;
+    std::array<int8_t, kPixelSums> tops = filled<kPixelSums>();
+    std::array<int8_t, kChannels> square_tops = filled<kChannels>();
+    uint32_t overflows = 0;
+
+    void add(int sum, double value) { Sum2::add(sums[sum], tops[sum], value); }
+    double value(int sum) const { return Sum2::value(sums[sum], tops[sum]); }
+    double square(int channel) const;
   };
+  template <std::size_t Count>
+  static constexpr std::array<int8_t, Count> filled() {
+    std::array<int8_t, Count> tops{};
+    tops.fill(Sum2::kEmpty);
+    return tops;
+  }
 
   /// Of three channels each, in sums_.
   enum Sum { kNormal, kPosition, kTransmittance, kBackground, kUnscattered, kAtMostOnce, kEven };
@@ -144,27 +190,29 @@ class Film {
   static SumPlaces places_of(LayerSet layers, int& count);
 
   void add_layers(std::size_t pixel, const LayerSample& sample);
+  void add_to(std::size_t pixel, Sum which, const Spectrum& value);
   /// Of a sum that has a place.
-  double* sums_of(std::size_t pixel, Sum which) {
-    return sums_.data() + pixel * sums_per_pixel_ + places_[which];
-  }
-  const double* sums_of(std::size_t pixel, Sum which) const {
-    return sums_.data() + pixel * sums_per_pixel_ + places_[which];
-  }
+  double sum_of(std::size_t pixel, Sum which, int channel) const;
   void put_layer(Layer layer, std::size_t pixel, std::vector<float>& values) const;
+  template <class Self, class Bytes>
+  static std::vector<Bytes> blocks_of(Self& film);
 
   PixelWindow window_;
   std::optional<RgbChromaticities> chromaticities_;
   LayerSet layers_;
+  uint32_t first_sample_ = 0;
   std::vector<Pixel> pixels_;
-  int sums_per_pixel_ = 0;  // in doubles
+  int sums_per_pixel_ = 0;
   SumPlaces places_{};
-  std::vector<double> sums_;
+  std::vector<Sum2::Array> sums_;
+  std::vector<int8_t> sum_tops_;
   WavelengthBuckets buckets_;
   /// Of a bucket of a pixel.
   struct BucketSum {
-    double radiance = 0;
-    double samples = 0;
+    Sum2::Array radiance = {};
+    uint32_t samples = 0;
+    int8_t top = Sum2::kEmpty;
+    std::array<int8_t, 3> unused = {};  // so that all bytes of a file are known
   };
   std::vector<BucketSum> bucket_sums_;
 };

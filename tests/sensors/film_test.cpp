@@ -126,10 +126,71 @@ TEST(Film, KeepsTheMeansOfEvenAndOddSamples) {
   EXPECT_EQ(value(image, 0, "B.R"), 0);
 }
 
+/// A sample with something of everything, of very different sizes.
+PathSample any_sample(RandomStream& random) {
+  const auto any = [&] { return random.uniform() * std::exp2(30 * random.uniform() - 15); };
+  return {.radiance = {any(), -any(), any()},
+          .alpha = random.uniform(),
+          .albedo = {any(), any(), any()},
+          .depth = any(),
+          .depth_weight = random.uniform(),
+          .lookups = static_cast<float>(static_cast<int>(1000 * random.uniform()))};
+}
+
+LayerSample any_layers(RandomStream& random) {
+  LayerSample layers;
+  for (Spectrum* part : {&layers.normal, &layers.position, &layers.transmittance,
+                         &layers.background, &layers.unscattered, &layers.at_most_once}) {
+    *part = any_sample(random).radiance;
+  }
+  return layers;
+}
+
+// Whatever the parts: odd and even first samples, parts of one sample, in any order.
+TEST(Film, PartsMergeToTheSameBits) {
+  constexpr uint32_t kSamples = 100;
+  const WavelengthBuckets buckets{4, 400, 800};
+  const std::array<double, 4> wavelengths = {420, 530, 640, 750};
+  const PixelWindow window = PixelWindow::whole(3, 2);
+  const auto fill = [&](Film& film, uint32_t count) {
+    for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
+      for (uint32_t sample = film.first_sample(); sample < film.first_sample() + count; ++sample) {
+        RandomStream random(5, static_cast<uint32_t>(pixel), sample, 0);
+        const PathSample path = any_sample(random);
+        film.add(pixel, path, any_layers(random));
+        film.add_spectrum(pixel, wavelengths, Channels(random.uniform(), 2, 3, random.uniform()));
+      }
+    }
+  };
+  Film whole(window, LayerSet::all(), buckets);
+  fill(whole, kSamples);
+  RandomStream random(11, 0, 0, 0);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Film> parts;
+    for (uint32_t first = 0; first < kSamples;) {
+      const auto wanted = static_cast<uint32_t>(1 + 30 * random.uniform());
+      const uint32_t count = std::min(kSamples - first, wanted);
+      parts.emplace_back(window, LayerSet::all(), buckets, first);
+      fill(parts.back(), count);
+      first += count;
+    }
+    Film merged(window, LayerSet::all(), buckets);
+    for (std::size_t i = parts.size(); i > 0; --i) {
+      std::swap(parts[i - 1], parts[static_cast<std::size_t>(random.uniform() * i)]);
+      for (std::size_t pixel = 0; pixel < merged.pixel_count(); ++pixel) {
+        merged.merge_pixel(pixel, parts[i - 1], pixel);
+      }
+    }
+    ASSERT_EQ(merged.to_image().values, whole.to_image().values) << parts.size();
+  }
+}
+
 TEST(Film, TakesMemoryForItsLayersAlone) {
   EXPECT_EQ(Film::bytes_per_pixel({}), Film::bytes_per_pixel(LayerSet::standard()));
-  EXPECT_EQ(Film::bytes_per_pixel({Layer::kNormal}), Film::bytes_per_pixel({}) + 24);
-  EXPECT_LE(Film::bytes_per_pixel(LayerSet::all()), 280U);
+  // Three sums, each of two bins and the number of the higher one.
+  EXPECT_EQ(Film::bytes_per_pixel({Layer::kNormal}), Film::bytes_per_pixel({}) + 51);
+  EXPECT_LE(Film::bytes_per_pixel({}), 256U);
+  EXPECT_LE(Film::bytes_per_pixel(LayerSet::all()), 640U);
 }
 
 TEST(Film, RefusesToBeEmpty) {
@@ -141,7 +202,7 @@ TEST(Film, RefusesToBeEmpty) {
 TEST(Film, GathersSpectralRadianceInBuckets) {
   const WavelengthBuckets buckets{4, 400, 800};
   Film film(PixelWindow::whole(2, 1), {}, buckets);
-  EXPECT_EQ(Film::bytes_per_pixel({}, buckets), Film::bytes_per_pixel({}) + 64);
+  EXPECT_EQ(Film::bytes_per_pixel({}, buckets), Film::bytes_per_pixel({}) + 96);
   const std::array<double, 4> wavelengths = {420, 499.9, 800, 399.9};
   film.add_spectrum(1, wavelengths, Channels(1, 4, 7, 100));
   film.add_spectrum(1, std::span(wavelengths).first(1), Channels(4, 9, 9, 9));
