@@ -10,8 +10,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "freepath/base/json_text.h"
 #include "freepath/base/printable.h"
-#include "freepath/report/json_text.h"
 
 namespace freepath::program {
 

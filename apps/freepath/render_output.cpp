@@ -62,7 +62,7 @@ nlohmann::json volumes_json(const RenderReport& report) {
 
 void add_metadata(Image& image, const RenderResult& result, const RenderReport& report) {
   const WalkSettings& walk = report.settings.walk;
-  const WalkStatistics counts = result.statistics();
+  const WalkStatistics counts = result.counts.statistics();
   const auto integer = [](uint64_t value) { return static_cast<int64_t>(value); };
   image.metadata = {
       {"Software", fmt::format("freepath {}", version())},
@@ -76,7 +76,7 @@ void add_metadata(Image& image, const RenderResult& result, const RenderReport& 
       {"freepath:tracker", walk.tracker},
       {"freepath:transmittance", walk.transmittance},
       {"freepath:seconds", result.seconds},
-      {"freepath:paths", integer(result.paths)},
+      {"freepath:paths", integer(result.counts.paths)},
       {"freepath:tentative_collisions", integer(counts.tentative_collisions)},
       {"freepath:null_collisions", integer(counts.null_collisions)},
       {"freepath:real_collisions", integer(counts.real_collisions)},
@@ -103,16 +103,16 @@ nlohmann::json counts_json(const WalkStatistics& counts) {
 }
 
 nlohmann::json statistics_json(const RenderResult& result, const RenderReport& report) {
-  nlohmann::json json = counts_json(result.statistics());
-  json.update({{"paths", result.paths},
-               {"free_paths", counts_json(result.free_paths)},
-               {"shadow_rays", counts_json(result.shadow_rays)},
+  nlohmann::json json = counts_json(result.counts.statistics());
+  json.update({{"paths", result.counts.paths},
+               {"free_paths", counts_json(result.counts.free_paths)},
+               {"shadow_rays", counts_json(result.counts.shadow_rays)},
                {"samples", result.samples},
                {"most_samples", result.most_samples},
                {"pixels_without_samples", result.pixels_without_samples},
-               {"overflows", result.overflows},
-               {"cut_paths", result.cut_paths},
-               {"cut_share", result.cut_share},
+               {"overflows", result.counts.overflows},
+               {"cut_paths", result.counts.cut_paths},
+               {"cut_share", result.counts.cut_share()},
                {"seconds",
                 {{"load", report.seconds_load},
                  {"build", report.seconds_build},
@@ -205,7 +205,7 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
 
 void print_warnings(const RenderResult& result, const RenderReport& report) {
   constexpr double kMeasurable = 0.005;
-  if (result.cut_share >= kMeasurable) {
+  if (result.counts.cut_share() >= kMeasurable) {
     const uint64_t limit = report.settings.max_scatterings;
     const uint64_t more = std::max<uint64_t>(100, 10 * limit);
     tell(
@@ -213,9 +213,9 @@ void print_warnings(const RenderResult& result, const RenderReport& report) {
         "weight: about as much light may be missing. Give a higher limit: --max-scatterings {0}, "
         "or in the scene Integrator \"volpath\" \"integer maxdepth\" {0}\n",
         more,
-        100 * static_cast<double>(result.cut_paths) /
-            static_cast<double>(std::max<uint64_t>(result.paths, 1)),
-        counted(limit, "scattering"), 100 * result.cut_share);
+        100 * static_cast<double>(result.counts.cut_paths) /
+            static_cast<double>(std::max<uint64_t>(result.counts.paths, 1)),
+        counted(limit, "scattering"), 100 * result.counts.cut_share());
   }
   if (result.pixels_without_samples > 0) {
     warn("{} of {} pixels {} no sample, for want of time: black with alpha 0",
@@ -226,12 +226,12 @@ void print_warnings(const RenderResult& result, const RenderReport& report) {
 }
 
 void require_no_overflows(const RenderResult& result) {
-  if (result.overflows == 0) return;
+  if (result.counts.overflows == 0) return;
   fail(
       "the weights of {} of {} paths left the range of float, so that the picture is not known: "
       "the variance of their pixels is infinite; media or surfaces that give back more light than "
       "they get do that, and trackers whose weights grow",
-      result.overflows, result.paths);
+      result.counts.overflows, result.counts.paths);
 }
 
 std::string samples_text(const RenderResult& result) {
@@ -246,11 +246,11 @@ void print_summary(const std::vector<std::string>& files, const RenderResult& re
   tell("{} per pixel in {} (load {:.2f} s, build {:.2f} s, render {:.2f} s)\n", samples,
        clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
        report.seconds_load, report.seconds_build, report.seconds_render);
-  tell("{}, {:.2f} lookups each\n", counted(result.paths, "path"),
-       static_cast<double>(result.statistics().lookups) /
-           static_cast<double>(std::max<uint64_t>(result.paths, 1)));
-  print_counts(report.settings.walk.tracker, "flight", result.free_paths);
-  print_counts(report.settings.walk.transmittance, "shadow ray", result.shadow_rays);
+  tell("{}, {:.2f} lookups each\n", counted(result.counts.paths, "path"),
+       static_cast<double>(result.counts.statistics().lookups) /
+           static_cast<double>(std::max<uint64_t>(result.counts.paths, 1)));
+  print_counts(report.settings.walk.tracker, "flight", result.counts.free_paths);
+  print_counts(report.settings.walk.transmittance, "shadow ray", result.counts.shadow_rays);
   print_warnings(result, report);
   for (const std::string& file : files) tell("wrote {}\n", file);
   require_no_overflows(result);

@@ -10,7 +10,10 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <optional>
+#include <shared_mutex>
 #include <utility>
+#include <vector>
 
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
@@ -51,25 +54,35 @@ class PassRenderer {
         threads_(settings.threads),
         wavefronts_(std::move(make_wavefront)),
         start_(time()),
-        deadline_(settings.whole_passes ? 0 : settings.time_limit) {}
+        deadline_(settings.whole_passes ? 0 : settings.time_limit),
+        next_checkpoint_(settings.checkpoint_seconds) {
+    const Film::SampleCounts counts = film.sample_counts();
+    samples_done_ = counts.fewest;
+    ahead_ = counts.most - counts.fewest;
+    double sum = 0;
+    for (std::size_t i = 0; ahead_ > 0 && i < film.pixel_count(); ++i) sum += film.samples(i);
+    paths_done_ = ahead_ > 0 ? sum / static_cast<double>(film.pixel_count()) : samples_done_;
+  }
 
   void run() {
     const bool timed = settings_.time_limit > 0;
     const uint32_t wanted = settings_.samples > 0 ? settings_.samples : UINT32_MAX;
     uint32_t samples = 1;
     while (!deadline_.stop_is_wished() && samples_done_ < wanted) {
-      samples = std::min(samples, wanted - samples_done_);
+      // A pass that was broken off before is made whole first.
+      samples = ahead_ > 0 ? ahead_ : std::min(samples, wanted - samples_done_);
       const double before = seconds_since(start_);
       deadline_.begin_pass(before, samples_done_ == 0);
-      if (prepare_) fewest_pixels_ = prepare_(samples_done_, samples);
-      pass(samples);
+      if (prepare_) fewest_pixels_ = prepare_(settings_.first_sample + samples_done_, samples);
+      const double share = pass(samples);
       if (over_) break;
       samples_done_ += samples;
+      ahead_ = 0;
       if (settings_.on_pass) settings_.on_pass(film_);
       const double now = seconds_since(start_);
       const bool needs_more = settings_.whole_passes && samples_done_ < 2;
       if (timed && now >= settings_.time_limit && !needs_more) break;
-      samples = next_pass(samples, (now - before) / samples, timed, now);
+      samples = next_pass(samples, (now - before) / (samples * share), timed, now);
       if (needs_more) samples = std::max(samples, 1U);
       if (samples == 0) break;
     }
@@ -77,9 +90,9 @@ class PassRenderer {
   }
 
   bool stop_is_wished() const { return deadline_.stop_is_wished(); }
-  double seconds() const { return seconds_since(start_); }
+  double seconds() const { return seconds_since(start_) + seconds_before(); }
   PathCounts counts() {
-    PathCounts sum;
+    PathCounts sum = counts_before();
     for (const PathWavefront& wavefront : wavefronts_) sum.merge(wavefront.counts());
     return sum;
   }
@@ -101,19 +114,70 @@ class PassRenderer {
     return static_cast<uint32_t>(std::clamp(wanted, 1.0, double(kMaxSamplesPerPass)));
   }
 
-  void pass(uint32_t samples) {
-    std::atomic<std::size_t> next_pixel = 0;
+  double seconds_before() const { return settings_.before ? settings_.before->seconds : 0; }
+  PathCounts counts_before() const {
+    return settings_.before ? settings_.before->counts : PathCounts{};
+  }
+
+  /// Pixels that come one after the other.
+  struct Run {
+    std::size_t first = 0, count = 0;
+  };
+
+  /// The pixels that a pass is about: all, but for those that have its samples already.
+  std::vector<Run> runs_of_pass() const {
+    const std::size_t pixels = film_.pixel_count();
+    if (ahead_ == 0) return {{0, pixels}};
+    std::vector<Run> runs;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      if (film_.samples(pixel) > samples_done_) continue;
+      if (runs.empty() || runs.back().first + runs.back().count != pixel)
+        runs.push_back({pixel, 0});
+      ++runs.back().count;
+    }
+    return runs;
+  }
+
+  /// Hands out pixels to threads.
+  class PixelDealer {
+   public:
+    explicit PixelDealer(std::vector<Run> runs) : runs_(std::move(runs)) {}
+
+    /// The next pixels, at most so many; none if there are no more.
+    Run next(std::size_t wanted) {
+      const std::lock_guard lock(mutex_);
+      if (runs_.empty()) return {};
+      Run& run = runs_.back();
+      const Run taken{run.first, std::min(wanted, run.count)};
+      run.first += taken.count;
+      run.count -= taken.count;
+      if (run.count == 0) runs_.pop_back();
+      return taken;
+    }
+
+   private:
+    std::mutex mutex_;
+    std::vector<Run> runs_;
+  };
+
+  /// @return the share of the pixels that it was about
+  double pass(uint32_t samples) {
+    const std::vector<Run> runs = runs_of_pass();
+    std::size_t pixels = 0;
+    for (const Run& run : runs) pixels += run.count;
+    PixelDealer dealer(runs);
     threads_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<int>(0, threads_.count(), 1),
-          [&](const tbb::blocked_range<int>&) { work(samples, next_pixel); },
+          [&](const tbb::blocked_range<int>&) { work(samples, dealer); },
           tbb::simple_partitioner());
     });
+    return static_cast<double>(pixels) / static_cast<double>(film_.pixel_count());
   }
 
   /// One thread's part of a pass: takes the next pixels until there are none.
-  void work(uint32_t samples, std::atomic<std::size_t>& next_pixel) {
-    const std::size_t pixels = static_cast<std::size_t>(film_.width()) * film_.height();
+  void work(uint32_t samples, PixelDealer& dealer) {
+    const auto pixels = static_cast<double>(film_.pixel_count());
     PathWavefront& wavefront = wavefronts_.local();
     const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
     std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
@@ -122,15 +186,22 @@ class PassRenderer {
     double began = 0;
     PathJobSource jobs;
     jobs.next = [&]() -> std::optional<PathJob> {
-      const std::size_t wanted = std::max<std::size_t>(paths / samples, fewest);
-      const std::size_t first = over_ ? pixels : next_pixel.fetch_add(wanted);
-      if (first >= pixels) return std::nullopt;
+      if (over_) return std::nullopt;
+      const Run run = dealer.next(std::max<std::size_t>(paths / samples, fewest));
+      if (run.count == 0) return std::nullopt;
       began = time();
-      return PathJob{first, std::min(wanted, pixels - first), samples_done_, samples};
+      return PathJob{run.first, run.count, settings_.first_sample + samples_done_, samples};
     };
+    jobs.adding = &adding_;
+    PathCounts* published = nullptr;
+    {
+      const std::shared_lock lock(adding_);
+      published = &published_.local();
+    }
     jobs.finished = [&](const PathJob& job) {
+      *published = wavefront.counts();
       const auto paths_traced = static_cast<double>(job.sample_count());
-      paths_done_ += paths_traced / static_cast<double>(pixels);
+      paths_done_ += paths_traced / pixels;
       if (hasty) paths = hasty_job_size(seconds_since(began) / paths_traced);
     };
     jobs.stop = [&] { return is_over(samples); };
@@ -155,7 +226,7 @@ class PassRenderer {
   }
 
   void report(double now, bool last = false) {
-    if (!progress_) return;
+    if (!progress_ && !settings_.on_checkpoint) return;
     std::unique_lock lock(report_mutex_, std::defer_lock);
     if (last) {
       lock.lock();
@@ -163,7 +234,21 @@ class PassRenderer {
       return;  // another thread is at it, or has been
     }
     next_report_ = now + kSecondsBetweenReports;
+    checkpoint(now);
+    if (!progress_) return;
     if (!progress_({paths_done_, double(settings_.samples), now})) deadline_.wish_to_stop(now);
+  }
+
+  /// Hands over what there is, if it is time. By one thread at a time.
+  void checkpoint(double now) {
+    if (!settings_.on_checkpoint || now < next_checkpoint_) return;
+    {
+      const std::lock_guard alone(adding_);
+      PathCounts counts = counts_before();
+      for (const PathCounts& of_thread : published_) counts.merge(of_thread);
+      settings_.on_checkpoint(film_, counts, now + seconds_before());
+    }
+    next_checkpoint_ = seconds_since(start_) + settings_.checkpoint_seconds;
   }
 
   Prepare prepare_;
@@ -179,7 +264,13 @@ class PassRenderer {
   std::atomic<double> paths_done_ = 0;  // samples of each pixel, on average
   std::mutex report_mutex_;
   std::atomic<double> next_report_ = kSecondsBetweenReports;
-  uint32_t samples_done_ = 0;
+  /// Samples that all pixels have, and how many more some have: those of a pass that was broken
+  /// off.
+  uint32_t samples_done_ = 0, ahead_ = 0;
+  std::shared_mutex adding_;  // held alone to look at the film while threads are at work
+  /// What each thread has counted when it added its last job; by whoever holds adding_.
+  tbb::enumerable_thread_specific<PathCounts> published_;
+  double next_checkpoint_;
 };
 
 /// What came of it, all but the film.
@@ -191,14 +282,7 @@ inline void finish_result(PassRenderer& passes, const RenderSettings& settings,
   result.pixels_without_samples = samples.pixels_without;
   result.interrupted = passes.stop_is_wished() && result.samples != settings.samples;
   result.seconds = passes.seconds();
-  const PathCounts counts = passes.counts();
-  result.paths = counts.paths;
-  result.overflows = counts.overflows;
-  result.cut_paths = counts.cut_paths;
-  result.cut_share = static_cast<double>(counts.cut_weight) * PathCounts::kWeightUnit /
-                     static_cast<double>(std::max<uint64_t>(counts.paths, 1));
-  result.free_paths = counts.free_paths;
-  result.shadow_rays = counts.shadow_rays;
+  result.counts = passes.counts();
   const Film::NonFinite non_finite = result.film.non_finite_samples();
   if (non_finite.samples > 0) {
     const auto width = static_cast<std::size_t>(result.film.width());

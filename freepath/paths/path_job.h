@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <shared_mutex>
 
 #include "freepath/tracking/statistics.h"
 
@@ -31,6 +32,9 @@ struct PathJobSource {
   /// The next job, none of which has a pixel of another that is under way; nothing if there is
   /// none.
   std::function<std::optional<PathJob>()> next;
+  /// Held shared while a job is added to the film and is told of as finished: who holds it alone
+  /// sees whole jobs. May be null.
+  std::shared_mutex* adding = nullptr;
   /// Told of each that has been added to the film.
   std::function<void(const PathJob&)> finished = [](const PathJob&) {};
   /// Asked before every flight; once it is true the jobs under way are dropped whole: nothing of
@@ -58,6 +62,19 @@ struct PathCounts {
     constexpr double kMost = 1e6;
     ++cut_paths;
     cut_weight += static_cast<uint64_t>(std::clamp(double{weight}, 0.0, kMost) / kWeightUnit);
+  }
+
+  /// The weight of the paths that were cut over the number of all: the share of light that is
+  /// missing where as much comes from everywhere.
+  double cut_share() const {
+    return static_cast<double>(cut_weight) * kWeightUnit /
+           static_cast<double>(std::max<uint64_t>(paths, 1));
+  }
+  /// Of all walks.
+  WalkStatistics statistics() const {
+    WalkStatistics sum = free_paths;
+    sum.merge(shadow_rays);
+    return sum;
   }
 
   void merge(const PathCounts& other) {

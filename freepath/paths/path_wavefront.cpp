@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <shared_mutex>
 #include <utility>
 #include "freepath/tracking/reference/stop_scope.h"
 
@@ -126,6 +127,8 @@ void PathWavefront::end_path(ScenePath& path, const PathJobSource& jobs, Film& f
   finish(path);
   OpenJobs::Job& job = jobs_[path.job];
   if (--job.paths_left > 0) return;
+  std::shared_lock<std::shared_mutex> adding;
+  if (jobs.adding != nullptr) adding = std::shared_lock(*jobs.adding);
   if (meter_ == nullptr) {
     add_to_film(job, film);
   } else {

@@ -46,6 +46,24 @@ void prepare_colors(PathSetup& setup, uint32_t first_sample, uint32_t samples) {
   });
 }
 
+/// An empty film, or that of what is gone on with.
+Film begin_film(const PixelWindow& window, ColorMode mode, const RenderSettings& settings) {
+  const bool spectral = mode == ColorMode::kSpectral;
+  const WavelengthBuckets buckets = spectral ? settings.buckets : WavelengthBuckets{};
+  if (!settings.before) return Film(window, settings.layers, buckets, settings.first_sample);
+  Film film = std::move(settings.before->film);
+  if (film.window() != window || film.layers() != settings.layers || film.buckets() != buckets ||
+      film.first_sample() != settings.first_sample) {
+    fail("what was rendered before has other pixels, layers, buckets or samples");
+  }
+  const uint32_t most = film.sample_counts().most;
+  if (settings.samples > 0 && most > settings.samples) {
+    fail("what was rendered before has {} samples of a pixel already, and {} are asked for", most,
+         settings.samples);
+  }
+  return film;
+}
+
 }  // namespace
 
 std::string standard_tracker(const PathScene& scene) {
@@ -63,11 +81,7 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   }
   const PixelWindow window =
       pixel_window(settings.crop, scene.camera->width(), scene.camera->height());
-  const bool spectral = mode == ColorMode::kSpectral;
-  RenderResult result{
-      .film = Film(window, settings.layers, spectral ? settings.buckets : WavelengthBuckets{}),
-      .free_paths = {},
-      .shadow_rays = {}};
+  RenderResult result{.film = begin_film(window, mode, settings)};
   const RgbColorSpace& space = scene.spectra->space();
   const RgbChromaticities chromaticities{space.primaries(), space.white()};
   if (!are_same(chromaticities, RgbChromaticities())) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,9 +14,21 @@
 
 namespace freepath {
 
+/// What is there of a picture already.
+struct RenderedBefore {
+  Film film;
+  PathCounts counts;
+  double seconds = 0;  ///< That it took.
+};
+
+/// Called with what there is of a picture, whole jobs alone, while no thread adds to it.
+using CheckpointFunction =
+    std::function<void(const Film&, const PathCounts& counts, double seconds)>;
+
 /// How much to render, and with what.
 struct RenderSettings {
-  uint32_t samples = 64;  ///< Of each pixel; 0: as many as the time allows.
+  uint32_t samples = 64;      ///< Of each pixel; 0: as many as the time allows.
+  uint32_t first_sample = 0;  ///< Number of the first of them.
   /// [s] 0: none. Passes are planned to end in time. One that doesn't is broken off: a first pass,
   /// after which each pixel has one sample, where it would take more than twice the limit and a
   /// second, later ones a few percent past the limit.
@@ -45,6 +58,11 @@ struct RenderSettings {
   std::function<double()> clock = {};
   /// Called between passes, by the thread that renders, with what there is.
   std::function<void(const Film&)> on_pass = {};
+  /// A picture to go on with, with the settings that it was begun with; it is moved from.
+  std::shared_ptr<RenderedBefore> before = {};
+  /// Called every so many seconds, by any thread, and has to be quick: others soon wait for it.
+  CheckpointFunction on_checkpoint = {};
+  double checkpoint_seconds = 60;
   /// Samples in flight per thread, of a path each, or one for each channel; the picture does not
   /// depend on it.
   std::size_t batch = kPathsInFlight;
@@ -61,28 +79,12 @@ struct RenderProgress {
 /// A picture and how it came about.
 struct RenderResult {
   Film film;
-  WalkStatistics free_paths;   ///< What the tracker did.
-  WalkStatistics shadow_rays;  ///< What the transmittance estimator did.
-  uint64_t paths = 0;
+  PathCounts counts = {};  ///< Of those before, too, where a picture was gone on with.
   /// Of the pixel with the fewest, and with the most: the same, unless a pass was broken off.
   uint32_t samples = 0, most_samples = 0;
   std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
-  /// Paths whose weight left the range of float: their pixels have an infinite variance.
-  uint64_t overflows = 0;
-  /// Paths that the limit of scatterings ended.
-  uint64_t cut_paths = 0;
-  /// The weight that they still had, over the number of all paths: the share of light that is
-  /// missing where as much comes from everywhere.
-  double cut_share = 0;
   double seconds = 0;
   bool interrupted = false;
-
-  /// Of both.
-  WalkStatistics statistics() const {
-    WalkStatistics sum = free_paths;
-    sum.merge(shadow_rays);
-    return sum;
-  }
 };
 
 /// Called now and then, by one thread at a time. False ends the rendering soon: a first pass if it

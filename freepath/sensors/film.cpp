@@ -90,7 +90,10 @@ void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& l
     return;
   }
   const bool is_even = (first_sample_ + sums.samples) % 2 == 0;
-  if (is_even) add_to(pixel, kEven, sample.radiance);
+  if (is_even) {
+    add_to(pixel, kEven, sample.radiance);
+    ++sums.even_samples;
+  }
   if (layers_.has_any(kPathLayers)) add_layers(pixel, layer_sample);
   for (int channel = 0; channel < kChannels; ++channel) {
     const double value = sample.radiance[channel];
@@ -137,6 +140,7 @@ void Film::merge_pixel(std::size_t pixel, const Film& other, std::size_t other_p
   }
   sums.lookups += more.lookups;
   sums.samples += more.samples;
+  sums.even_samples += more.even_samples;
   sums.non_finite += more.non_finite;
   sums.overflows += more.overflows;
   const std::size_t first = pixel * sums_per_pixel_;
@@ -228,10 +232,8 @@ void Film::put_layer(Layer layer, std::size_t pixel, std::vector<float>& values)
       return put_each(
           [&](int c) { return (sums.value(kRadiance + c) - sum_of(pixel, kAtMostOnce, c)) / n; });
     case Layer::kHalves: {
-      // Samples are numbered from first_sample_ on.
-      const uint32_t even = (sums.samples + 1 - first_sample_ % 2) / 2;
-      const uint32_t odd = sums.samples - even;
-      put_sum(kEven, even);
+      const uint32_t odd = sums.samples - sums.even_samples;
+      put_sum(kEven, sums.even_samples);
       return put_each([&](int c) {
         return odd > 0 ? (sums.value(kRadiance + c) - sum_of(pixel, kEven, c)) / odd : 0;
       });

@@ -166,10 +166,12 @@ class Film {
     std::array<Sum3::Array, kChannels> squares = {};
     uint64_t lookups = 0;
     uint32_t samples = 0;
+    uint32_t even_samples = 0;  // those of even number
     uint32_t non_finite = 0;
+    uint32_t overflows = 0;
     std::array<int8_t, kPixelSums> tops = filled<kPixelSums>();
     std::array<int8_t, kChannels> square_tops = filled<kChannels>();
-    uint32_t overflows = 0;
+    std::array<int8_t, 4> unused = {};  // so that all bytes of a file are known
 
     void add(int sum, double value) { Sum2::add(sums[sum], tops[sum], value); }
     double value(int sum) const { return Sum2::value(sums[sum], tops[sum]); }
@@ -212,7 +214,7 @@ class Film {
     Sum2::Array radiance = {};
     uint32_t samples = 0;
     int8_t top = Sum2::kEmpty;
-    std::array<int8_t, 3> unused = {};  // so that all bytes of a file are known
+    std::array<int8_t, 3> unused = {};
   };
   std::vector<BucketSum> bucket_sums_;
 };

@@ -71,4 +71,14 @@ LayerSet parse_layers(std::string_view text) {
   }
 }
 
+std::string to_string(LayerSet layers) {
+  std::string text;
+  for (const LayerInfo& info : kInfos) {
+    if (!layers.has(info.layer)) continue;
+    text += text.empty() ? "" : ",";
+    text += info.name;
+  }
+  return text.empty() ? "none" : text;
+}
+
 }  // namespace freepath

@@ -81,5 +81,7 @@ inline constexpr LayerSet kPathLayers =
 /// "all", "none", "default", or names separated by commas, which may have these among them.
 /// @throws Error for a name that is none, with all that there are
 LayerSet parse_layers(std::string_view text);
+/// The names of layers, separated by commas, or "none": what parse_layers() takes.
+std::string to_string(LayerSet layers);
 
 }  // namespace freepath

@@ -15,6 +15,7 @@ struct PixelWindow {
   static constexpr PixelWindow whole(int width, int height) {
     return {0, 0, width, height, width, height};
   }
+  constexpr bool operator==(const PixelWindow&) const = default;
   constexpr bool is_whole() const { return width == full_width && height == full_height; }
   /// Where in the picture (row · full_width + column) a pixel of the window is, which is
   /// numbered row by row.

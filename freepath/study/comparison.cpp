@@ -261,9 +261,9 @@ void Experiment::run_once(std::size_t which, int repeat) {
   run.seconds = rendered.seconds - watch.seconds;
   run.samples = rendered.samples;
   run.camera_samples = uint64_t{rendered.samples} * subject_.width * subject_.height;
-  run.overflows = rendered.overflows;
-  run.free_paths = rendered.free_paths;
-  run.shadow_rays = rendered.shadow_rays;
+  run.overflows = rendered.counts.overflows;
+  run.free_paths = rendered.counts.free_paths;
+  run.shadow_rays = rendered.counts.shadow_rays;
   run.convergence = std::move(watch.points);
   take_picture(which, run, estimates_of(rendered.film));
   result.runs.push_back(std::move(run));

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "freepath/base/json_text.h"
 #include "freepath/base/version.h"
-#include "freepath/report/json_text.h"
 #include "freepath/study/comparison_figures.h"
 #include "freepath/study/comparison_report.h"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "freepath/report/json_text.h"
+#include "freepath/base/json_text.h"
 #include "freepath/study/lab_figures.h"
 
 namespace freepath {

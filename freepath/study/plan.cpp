@@ -57,8 +57,8 @@ bool run_round(const Subject& subject, const PilotSettings& settings, uint64_t s
     const int threads = Threads(settings.render.threads).count();
     tally.cpu_seconds += cpu_seconds;
     tally.samples += uint64_t{rendered.samples} * rendered.film.width() * rendered.film.height();
-    tally.overflows += rendered.overflows;
-    tally.lookups += rendered.statistics().lookups;
+    tally.overflows += rendered.counts.overflows;
+    tally.lookups += rendered.counts.statistics().lookups;
     tally.costs.push_back(cpu_seconds / threads * squared_noise(estimates_of(rendered.film)));
   } catch (const Error& error) {
     result.refusal = error.what();

@@ -83,7 +83,7 @@ TEST(Renderer, TimeEndsAFirstPassThatWouldTakeLong) {
     EXPECT_FALSE(result.interrupted);
     EXPECT_EQ(result.samples, 0U);
     EXPECT_EQ(result.most_samples, 1U);
-    EXPECT_EQ(result.pixels_without_samples, 200U * 200 - result.paths);
+    EXPECT_EQ(result.pixels_without_samples, 200U * 200 - result.counts.paths);
   }
   // Pixels that both have reached are the same; those without a sample are 0.
   const Image images[] = {results[0].film.to_image(), results[1].film.to_image()};
@@ -111,7 +111,7 @@ TEST(Renderer, AWishToStopEndsAFirstPassThatWouldTakeLong) {
   EXPECT_TRUE(result.interrupted);
   EXPECT_LT(result.seconds, 1.2 + kAfterTheEnd);
   EXPECT_LT(result.most_samples, 2U);
-  EXPECT_EQ(result.pixels_without_samples, 64U * 64 - result.paths);
+  EXPECT_EQ(result.pixels_without_samples, 64U * 64 - result.counts.paths);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(Renderer, AnOverflowMakesTheVarianceInfinite) {
   RenderSettings settings = settings_of(2, "weighted-delta:rate-scale=0.1");
   settings.studies_unbounded_weights = true;
   const RenderResult result = render(medium, camera_for(medium, 4, 4), constant_light(1), settings);
-  EXPECT_GT(result.overflows, 0U);
+  EXPECT_GT(result.counts.overflows, 0U);
   const Image image = result.film.to_image();
   const int place = find_channel(image, "variance.R").value();
   bool infinite = false;
@@ -152,10 +152,10 @@ void expect_furnace(const Component& component, int samples) {
     settings.walk.interpolation = test.interpolation;
     const RenderResult result = render(medium, camera, constant_light(1), settings);
     const PictureMean mean = picture_mean(result.film, 1);
-    EXPECT_TRUE(check_mean(test.tracker, mean.mean, mean.error, result.paths, 1.0,
+    EXPECT_TRUE(check_mean(test.tracker, mean.mean, mean.error, result.counts.paths, 1.0,
                            {.z = threshold, .absolute = 1e-5, .largest_relative_error = 1e-3}));
-    EXPECT_EQ(result.overflows, 0U);
-    EXPECT_EQ(result.statistics().bound_violations, 0U);
+    EXPECT_EQ(result.counts.overflows, 0U);
+    EXPECT_EQ(result.counts.statistics().bound_violations, 0U);
   }
 }
 
@@ -178,10 +178,10 @@ TEST(Renderer, ChromaticFurnaceIsWhiteInEveryChannel) {
       render(medium, camera_for(medium, 32, 32), constant_light(1), settings_of(512));
   for (int channel = 0; channel < 3; ++channel) {
     const PictureMean mean = picture_mean(result.film, channel);
-    EXPECT_TRUE(check_mean("channel", mean.mean, mean.error, result.paths, 1.0,
+    EXPECT_TRUE(check_mean("channel", mean.mean, mean.error, result.counts.paths, 1.0,
                            {.absolute = 1e-5, .largest_relative_error = 2e-3}));
   }
-  EXPECT_EQ(result.paths, 3U * 512 * 32 * 32);
+  EXPECT_EQ(result.counts.paths, 3U * 512 * 32 * 32);
 }
 
 // Without a scattering what is cut is what does not pass: A of the picture.
@@ -198,10 +198,11 @@ TEST(Renderer, TellsTheWeightThatTheLimitCuts) {
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
       sum += image.values[i * image.channels.size() + alpha];
     }
-    EXPECT_GT(result.cut_paths, 0U);
-    EXPECT_NEAR(result.cut_share, sum / static_cast<double>(image.pixel_count()), 1e-4);
+    EXPECT_GT(result.counts.cut_paths, 0U);
+    EXPECT_NEAR(result.counts.cut_share(), sum / static_cast<double>(image.pixel_count()), 1e-4);
     settings.max_scatterings = UINT32_MAX;
-    EXPECT_EQ(render(medium, camera_for(medium, 2, 2), constant_light(1), settings).cut_paths, 0U);
+    EXPECT_EQ(
+        render(medium, camera_for(medium, 2, 2), constant_light(1), settings).counts.cut_paths, 0U);
   }
 }
 
@@ -246,8 +247,8 @@ TEST(Renderer, AbsorbingMediumLetsThroughItsTransmittance) {
     settings.walk.absorption = Absorption::kAnalog;
     const RenderResult result = render(medium, Camera(view, 1, 1), constant_light(2), settings);
     const PictureMean mean = picture_mean(result.film, 0);
-    EXPECT_TRUE(check_mean("radiance", mean.mean, mean.error, result.paths, 2 * std::exp(-tau),
-                           {.absolute = 1e-5, .largest_relative_error = 0.01}));
+    EXPECT_TRUE(check_mean("radiance", mean.mean, mean.error, result.counts.paths,
+                           2 * std::exp(-tau), {.absolute = 1e-5, .largest_relative_error = 0.01}));
   }
 }
 
@@ -257,7 +258,8 @@ TEST(Renderer, CameraInsideTheMediumSeesTheFurnaceToo) {
   const Camera camera({centre, centre + Vec3d(1, 0.2, 0.1), Vec3d(0, 1, 0), 90}, 16, 16);
   const RenderResult result = render(medium, camera, constant_light(1), settings_of(1024));
   const PictureMean mean = picture_mean(result.film, 2);
-  EXPECT_TRUE(check_mean("inside", mean.mean, mean.error, result.paths, 1, {.absolute = 1e-5}));
+  EXPECT_TRUE(
+      check_mean("inside", mean.mean, mean.error, result.counts.paths, 1, {.absolute = 1e-5}));
 }
 
 // The power of the furnaces: an albedo of 0.99 for 1 must fail them.

@@ -61,8 +61,8 @@ Picture render_periodic(const PathScene& scene, Interpolation interpolation, uin
   settings.samples = samples;
   settings.walk.interpolation = interpolation;
   const RenderResult result = render_scene(scene, mode, settings);
-  EXPECT_EQ(result.overflows, 0U);
-  EXPECT_EQ(result.statistics().bound_violations, 0U);
+  EXPECT_EQ(result.counts.overflows, 0U);
+  EXPECT_EQ(result.counts.statistics().bound_violations, 0U);
   return picture_of(result);
 }
 

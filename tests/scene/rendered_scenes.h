@@ -72,9 +72,9 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
 inline Picture picture_of(const RenderResult& result) {
   Picture picture;
   picture.image = result.film.to_image();
-  picture.overflows = result.overflows;
-  picture.bound_violations = result.statistics().bound_violations;
-  picture.paths = result.paths;
+  picture.overflows = result.counts.overflows;
+  picture.bound_violations = result.counts.statistics().bound_violations;
+  picture.paths = result.counts.paths;
   const char* const names[] = {"R", "G", "B"};
   const auto pixels = static_cast<double>(picture.image.pixel_count());
   for (int c = 0; c < 3; ++c) {

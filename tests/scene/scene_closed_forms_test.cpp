@@ -198,10 +198,11 @@ TEST(SceneClosedForm, HomogeneousMediaAreKnownWithoutLookUps) {
     return render_scene(built.scene, ColorMode::kRgb, settings);
   };
   const RenderResult chosen = render("", true);
-  EXPECT_GT(chosen.shadow_rays.rays, 1000U);
-  EXPECT_EQ(chosen.shadow_rays.tentative_collisions, 0U);
-  EXPECT_GT(render("", false).shadow_rays.tentative_collisions, 0U) << "of ratio tracking";
-  const WalkStatistics flights = render(R"("string tracker" "decomposition")", true).free_paths;
+  EXPECT_GT(chosen.counts.shadow_rays.rays, 1000U);
+  EXPECT_EQ(chosen.counts.shadow_rays.tentative_collisions, 0U);
+  EXPECT_GT(render("", false).counts.shadow_rays.tentative_collisions, 0U) << "of ratio tracking";
+  const WalkStatistics flights =
+      render(R"("string tracker" "decomposition")", true).counts.free_paths;
   EXPECT_GT(flights.real_collisions, 1000U);
   EXPECT_EQ(flights.lookups, 0U);
 }

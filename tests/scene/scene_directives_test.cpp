@@ -242,8 +242,8 @@ TEST(SceneDirectives, LimitOfScatteringsTellsWhatItCuts) {
                     diagnostics);
     const RenderResult result =
         render_scene(built.scene, mode, settings_of(built, {.mode = mode, .samples = 16}));
-    EXPECT_EQ(result.cut_paths, result.paths);
-    EXPECT_NEAR(result.cut_share, 0.25, 0.001);
+    EXPECT_EQ(result.counts.cut_paths, result.counts.paths);
+    EXPECT_NEAR(result.counts.cut_share(), 0.25, 0.001);
   }
 }
 

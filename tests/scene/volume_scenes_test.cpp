@@ -41,7 +41,7 @@ Picture render_volume(const PathScene& scene, ColorMode mode, uint32_t samples) 
   settings.samples = samples;
   settings.walk.interpolation = Interpolation::kNearest;
   const RenderResult result = render_scene(scene, mode, settings);
-  EXPECT_EQ(result.overflows, 0U);
+  EXPECT_EQ(result.counts.overflows, 0U);
   return picture_of(result);
 }
 

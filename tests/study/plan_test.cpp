@@ -46,7 +46,7 @@ TEST(Pilots, ForeseeLookupsAndNoise) {
   subject.render = [render = subject.render, &looked_up](const RenderSettings& settings,
                                                          const ProgressFunction& progress) {
     RenderResult result = render(settings, progress);
-    looked_up += result.statistics().lookups;
+    looked_up += result.counts.statistics().lookups;
     return result;
   };
   PilotSettings pilots;
@@ -58,8 +58,8 @@ TEST(Pilots, ForeseeLookupsAndNoise) {
   RenderSettings settings;
   settings.samples = 256;
   const RenderResult rendered = small_subject().render(settings, {});
-  const double lookups =
-      static_cast<double>(rendered.statistics().lookups) / (256.0 * subject.width * subject.height);
+  const double lookups = static_cast<double>(rendered.counts.statistics().lookups) /
+                         (256.0 * subject.width * subject.height);
   EXPECT_NEAR(results[0].lookups_per_path / lookups, 1, 0.03);
   EXPECT_LT(results[1].lookups_per_path, results[0].lookups_per_path);
   // Noise of that rendering, and the time foreseen to it.
@@ -68,7 +68,7 @@ TEST(Pilots, ForeseeLookupsAndNoise) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
   const double noise = std::sqrt(mean(picture.variance)) / mean(picture.mean);
-  const double seconds = 1e-6 * static_cast<double>(rendered.statistics().lookups);
+  const double seconds = 1e-6 * static_cast<double>(rendered.counts.statistics().lookups);
   EXPECT_NEAR(results[0].seconds_to(noise)->value / seconds, 1, 0.1);
   EXPECT_NEAR(results[0].seconds_to(noise / 10)->value / results[0].seconds_to(noise)->value, 100,
               1e-6);

@@ -1,0 +1,77 @@
+#pragma once
+/// @file Films in files: all that a picture's samples have added up to, to be gone on with or
+/// merged.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "freepath/io/aside_file.h"
+#include "freepath/paths/path_job.h"
+#include "freepath/sensors/film.h"
+
+namespace freepath {
+
+/// What a picture depends on, bit by bit, besides its samples' numbers: films can be merged where
+/// it is the same.
+struct PictureIdentity {
+  std::string version;  ///< Of freepath.
+  uint64_t seed = 0;
+  /// Names and values: options that were given, contents of files (ContentDigest), the methods.
+  std::vector<std::pair<std::string, std::string>> facts;
+
+  bool operator==(const PictureIdentity&) const = default;
+};
+
+/// Says in what the second of two pictures differs from the first: "seed is 2 and not 1"; empty
+/// where it doesn't.
+/// @param any_seed whether their seeds may differ
+std::string difference(const PictureIdentity& first, const PictureIdentity& second,
+                       bool any_seed = false);
+
+/// What a film's file says besides sums.
+struct FilmHeader {
+  PictureIdentity identity;
+  /// The pixels that the film's picture is a tile of; its own window where it is no tile.
+  PixelWindow region;
+  uint32_t wanted_samples = 0;  ///< Of each pixel, that the film is to have; 0: not known.
+  PathCounts counts;
+  double seconds = 0;
+  /// What its maker wants to know of it later on, in any form.
+  std::string notes;
+
+  // Set by those that read and write it.
+  PixelWindow window;
+  LayerSet layers;
+  WavelengthBuckets buckets;
+  std::optional<RgbChromaticities> chromaticities;
+  uint32_t first_sample = 0;
+  Film::SampleCounts samples;
+};
+
+/// A film and what its file says of it.
+struct FilmFile {
+  FilmHeader header;
+  Film film;
+};
+
+/// The extension of films' files.
+inline constexpr const char* kFilmExtension = ".film";
+/// Whether a name has it.
+bool is_film_file(const std::string& path);
+
+/// Writes a film: a line that names the format, the header as JSON, the sums packed by Blosc, and a
+/// checksum. The file appears under its name once it is whole.
+/// @throws Error that names the file
+void write_film(AsideFile& file, FilmHeader header, const Film& film);
+
+/// @throws Error that names the file, if it is no film, of another version of the format, cut off
+/// or
+///   damaged
+FilmHeader read_film_header(const std::string& path);
+/// @throws Error as read_film_header
+FilmFile read_film(const std::string& path);
+
+}  // namespace freepath
