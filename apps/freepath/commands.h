@@ -10,6 +10,7 @@ namespace freepath::program {
 
 /// @param clock as of run()
 void add_render_command(CLI::App& program, const std::function<double()>& clock);
+void add_merge_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_flux_command(CLI::App& program);

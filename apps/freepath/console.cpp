@@ -23,6 +23,7 @@ struct Console {
   std::string results;  ///< Not yet written.
   int lost = 0;         ///< The error by which results were lost.
   bool has_status = false;
+  bool is_partial = false;
 };
 
 Console& console() {
@@ -87,6 +88,12 @@ void prepare_console() {
   std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(end_by_exception);
   console().lost = 0;
+  console().is_partial = false;
+}
+
+void note_partial_result() {
+  const std::lock_guard lock(console().mutex);
+  console().is_partial = true;
 }
 
 int tell_unexpected(const std::exception& error) {
@@ -113,6 +120,7 @@ int finish_console(int status) {
     flush(console());
     remove_status(console());
     lost = console().lost;
+    if (status == 0 && console().is_partial) status = kPartialStatus;
   }
   if (lost == 0) return status;
   if (lost != EPIPE) {

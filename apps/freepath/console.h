@@ -29,6 +29,12 @@ int tell_unexpected(const std::exception& error);
 ///   as of a program that a pipe ended, without a word where their reader has gone
 int finish_console(int status);
 
+/// Exit status of a program that was ended before it was done, and has written what there was; as
+/// EX_TEMPFAIL of sysexits.h, "try again".
+inline constexpr int kPartialStatus = 75;
+/// Notes that less was done than was asked for: the status is kPartialStatus where it would be 0.
+void note_partial_result();
+
 /// Adds a text to the results, as it is.
 void put_output(std::string_view text);
 /// Writes a message, as it is, on a line of its own. A stream that takes nothing is no error.

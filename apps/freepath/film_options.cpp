@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -76,6 +77,12 @@ FilmPlan read_film_options(const FilmOptions& options) {
   if (!options.display.empty()) plan.display = parse_display(options.display);
   if (options.denoise) plan.denoiser = Denoiser::load();
   return plan;
+}
+
+ViewTransform read_view(const std::string& text) {
+  constexpr std::array kViews{Choice<ViewTransform>{"standard", ViewTransform::kStandard},
+                              Choice<ViewTransform>{"neutral", ViewTransform::kNeutral}};
+  return parse_choice(text, "--view", kViews);
 }
 
 void check_memory(const PixelWindow& window, const FilmPlan& plan,

@@ -43,6 +43,9 @@ void add_film_options(CLI::App& command, FilmOptions& options);
 /// @throws Error naming the option; where no denoiser can be loaded, how to get one
 FilmPlan read_film_options(const FilmOptions& options);
 
+/// "standard" or "neutral". @throws Error naming --view
+ViewTransform read_view(const std::string& text);
+
 /// Refuses a picture that this machine's memory can't hold: it would end the program, or others.
 void check_memory(const PixelWindow& window, const FilmPlan& plan,
                   const WavelengthBuckets& buckets = {});

@@ -119,7 +119,9 @@ void check_distinct(const std::vector<PictureFiles>& pictures) {
   std::map<std::string, int> frames;
   for (const PictureFiles& picture : pictures) {
     std::vector<std::string> written = picture.outputs;
-    if (!picture.stats.empty()) written.push_back(picture.stats);
+    for (const std::string& file : {picture.stats, picture.checkpoint}) {
+      if (!file.empty()) written.push_back(file);
+    }
     for (const std::string& file : written) {
       const std::string name = canonical(file);
       if (volumes.contains(name)) fail("{}: would overwrite a volume; choose another name", file);
@@ -133,15 +135,18 @@ void check_distinct(const std::vector<PictureFiles>& pictures) {
 
 /// Checks what a single picture, or one frame, writes.
 void check_written(const PictureFiles& picture) {
-  for (const std::string& output : picture.outputs) check_writable(output);
+  for (const std::string& output : picture.outputs) check_output(output);
   check_statistics_file(picture.stats, picture.outputs, picture.volumes);
+  if (!picture.checkpoint.empty()) {
+    read_option("--checkpoint", [&] { check_file_place(picture.checkpoint); });
+  }
 }
 
 /// Refuses names with a place for a frame's number where there are no frames.
 void check_no_sequence(const PictureFiles& names) {
   std::vector<std::string> all = names.volumes;
   all.insert(all.end(), names.outputs.begin(), names.outputs.end());
-  all.push_back(names.stats);
+  all.insert(all.end(), {names.stats, names.checkpoint, names.resume});
   for (const std::string& name : all) {
     if (!looks_like_sequence(name)) continue;
     fail("{}: has a place for the number of a frame; say which frames, as in --frames 1-48", name);
@@ -243,6 +248,8 @@ std::vector<PictureFiles> plan_pictures(const std::string& frames, const Picture
   const std::vector<FrameName> volumes = frame_names(names.volumes);
   const std::vector<FrameName> outputs = frame_names(names.outputs);
   const FrameName stats(names.stats);
+  const FrameName checkpoint(names.checkpoint);
+  const FrameName resume(names.resume);
   const auto has_place = [](const FrameName& name) { return name.has_place(); };
   if (numbers.size() > 1) {
     if (std::none_of(volumes.begin(), volumes.end(), has_place)) {
@@ -262,10 +269,12 @@ std::vector<PictureFiles> plan_pictures(const std::string& frames, const Picture
       refuse_overwriting(outputs[i], names.outputs[i]);
     }
     refuse_overwriting(stats, names.stats);
+    refuse_overwriting(checkpoint, names.checkpoint);
+    refuse_overwriting(resume, names.resume);
   }
   std::vector<PictureFiles> pictures;
   for (const int number : numbers) {
-    PictureFiles picture{.frame = number, .volumes = {}, .outputs = {}, .stats = {}};
+    PictureFiles picture{.frame = number, .volumes = {}, .outputs = {}};
     for (const FrameName& volume : volumes) {
       picture.volumes.push_back(volume.in_frame(number));
       if (volume.has_place() || pictures.empty()) {
@@ -274,6 +283,8 @@ std::vector<PictureFiles> plan_pictures(const std::string& frames, const Picture
     }
     for (const FrameName& output : outputs) picture.outputs.push_back(output.in_frame(number));
     picture.stats = stats.in_frame(number);
+    picture.checkpoint = checkpoint.in_frame(number);
+    picture.resume = resume.in_frame(number);
     check_written(picture);
     pictures.push_back(std::move(picture));
   }

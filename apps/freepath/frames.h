@@ -40,7 +40,8 @@ struct PictureFiles {
   std::optional<int> frame;  ///< Its number, where it belongs to a sequence.
   std::vector<std::string> volumes;
   std::vector<std::string> outputs;
-  std::string stats;  ///< Empty: none.
+  std::string stats = {};  ///< Empty: none, as those that follow.
+  std::string checkpoint = {}, resume = {};
 };
 
 /// The files of all pictures: one for each frame, or a single one where `frames` is empty, whose

@@ -8,14 +8,18 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "apps/freepath/console.h"
+#include "freepath/base/json_text.h"
 
 namespace freepath::program {
 namespace {
 
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
+
+constexpr double kSecondsBetweenLines = 10;
 
 /// Signals that mean the end is near: what there is had better be saved.
 constexpr std::array kEndings{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
@@ -28,25 +32,58 @@ void on_ending(int signal) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::size_t pixels, double time_limit)
-    : pixels_(static_cast<double>(pixels)), time_limit_(time_limit) {}
+ProgressBar::ProgressBar(std::size_t pixels, double time_limit, ProgressForm form, double noise)
+    : pixels_(static_cast<double>(pixels)), time_limit_(time_limit), form_(form), noise_(noise) {
+  if (form_ == ProgressForm::kAutomatic) {
+    form_ = isatty(STDERR_FILENO) != 0 ? ProgressForm::kBar : ProgressForm::kLines;
+  }
+  if (form_ == ProgressForm::kLines) next_line_ = kSecondsBetweenLines;
+}
 
-void ProgressBar::show(const RenderProgress& progress) const {
-  if (progress.seconds <= 0) return;
-  double done = progress.samples_total > 0 ? progress.samples_done / progress.samples_total : 0;
-  if (time_limit_ > 0) done = std::max(done, progress.seconds / time_limit_);
-  done = std::clamp(done, 0.0, 1.0);
-  constexpr int kWidth = 30;
-  const int filled = static_cast<int>(done * kWidth);
-  const double left = done > 0 ? progress.seconds * (1 - done) / done : 0;
+ProgressBar::State ProgressBar::state_of(const RenderProgress& progress) const {
+  State state;
+  if (progress.samples_total > 0) state.done = progress.samples_done / progress.samples_total;
+  if (time_limit_ > 0) state.done = std::max(state.done, progress.seconds / time_limit_);
+  state.done = std::clamp(state.done, 0.0, 1.0);
+  if (state.done > 0) state.seconds_left = progress.seconds * (1 - state.done) / state.done;
+  state.samples_per_second = progress.samples_done * pixels_ / progress.seconds;
+  if (noise_ > 0 && progress.samples_done > 0) {
+    state.noise = noise_ * std::sqrt(progress.samples_total / progress.samples_done);
+  }
+  return state;
+}
+
+void ProgressBar::show(const RenderProgress& progress) {
+  if (progress.seconds <= 0 || form_ == ProgressForm::kNone) return;
+  if (form_ != ProgressForm::kBar && progress.seconds < next_line_) return;
+  next_line_ = progress.seconds + kSecondsBetweenLines;
+  const State state = state_of(progress);
+  if (form_ == ProgressForm::kJson) {
+    nlohmann::json json = {{"progress", state.done},
+                           {"samples", progress.samples_done},
+                           {"samples_total", progress.samples_total},
+                           {"seconds", progress.seconds},
+                           {"seconds_left", state.seconds_left},
+                           {"samples_per_second", state.samples_per_second}};
+    if (state.noise > 0) json["noise"] = state.noise;
+    put_message(json_text(json) + '\n');
+    return;
+  }
   const std::string samples =
       progress.samples_total > 0
           ? fmt::format("{:.0f}/{:.0f}", progress.samples_done, progress.samples_total)
           : fmt::format("{:.0f}", progress.samples_done);
-  show_status(fmt::format("[{:=<{}}{: <{}}] {:3.0f} %  {} samples  {:.2f} M samples/s  {} left", "",
-                          filled, "", kWidth - filled, 100 * done, samples,
-                          1e-6 * progress.samples_done * pixels_ / progress.seconds,
-                          clock_text(left)));
+  const std::string noise = state.noise > 0 ? fmt::format("  noise {:.2g}", state.noise) : "";
+  const std::string text =
+      fmt::format("{:3.0f} %  {} samples  {:.2f} M samples/s{}  {} left", 100 * state.done, samples,
+                  1e-6 * state.samples_per_second, noise, clock_text(state.seconds_left));
+  if (form_ == ProgressForm::kLines) {
+    tell("{}\n", text);
+    return;
+  }
+  constexpr int kWidth = 30;
+  const int filled = static_cast<int>(state.done * kWidth);
+  show_status(fmt::format("[{:=<{}}{: <{}}] {}", "", filled, "", kWidth - filled, text));
 }
 
 void ProgressBar::finish() const { clear_status(); }

@@ -9,20 +9,42 @@
 
 namespace freepath::program {
 
-/// Draws how far a rendering is, with its rate and the time left, where standard error is a
-/// terminal; prints nothing otherwise.
+/// How progress is told.
+enum class ProgressForm {
+  kAutomatic,  ///< A bar where standard error is a terminal, else lines.
+  kBar,        ///< A line that changes; nothing where standard error is no terminal.
+  kLines,      ///< A line every ten seconds.
+  kJson,       ///< The same, each an object of JSON: `progress` from 0 to 1, `samples`, ...
+  kNone
+};
+
+/// Tells how far a rendering is, with its rate and the time left, on standard error.
 class ProgressBar {
  public:
   /// @param pixels of the picture, for the rate
   /// @param time_limit [s] 0: none
-  ProgressBar(std::size_t pixels, double time_limit);
-  void show(const RenderProgress& progress) const;
-  /// Clears the line.
+  /// @param noise that is to be reached; 0: none is asked for
+  ProgressBar(std::size_t pixels, double time_limit, ProgressForm form = ProgressForm::kBar,
+              double noise = 0);
+  void show(const RenderProgress& progress);
+  /// Clears the bar.
   void finish() const;
 
  private:
+  /// What there is to tell.
+  struct State {
+    double done = 0;  ///< 0 to 1
+    double seconds_left = 0;
+    double samples_per_second = 0;
+    double noise = 0;
+  };
+  State state_of(const RenderProgress& progress) const;
+
   double pixels_;
   double time_limit_;
+  ProgressForm form_;
+  double noise_;
+  double next_line_ = 0;  // [s]
 };
 
 /// "1:02:03", "2:03" or "0:03" for seconds.

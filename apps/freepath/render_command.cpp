@@ -67,6 +67,7 @@ Examples:
 struct RenderOptions {
   PictureOptions picture;
   FilmOptions film;
+  RunPlanOptions run;
   std::string stats, frames;
   std::vector<std::string> outputs;
   uint32_t samples = 0;
@@ -90,13 +91,9 @@ RenderSettings read_settings(const RenderOptions& options) {
   return settings;
 }
 
-constexpr std::array kViewTransforms{Choice<ViewTransform>{"standard", ViewTransform::kStandard},
-                                     Choice<ViewTransform>{"neutral", ViewTransform::kNeutral}};
-
 /// @param usual the view transform where none is given
 PictureLook read_look(const RenderOptions& options, ViewTransform usual) {
-  const ViewTransform view =
-      options.view.empty() ? usual : parse_choice(options.view, "--view", kViewTransforms);
+  const ViewTransform view = options.view.empty() ? usual : read_view(options.view);
   return {.exposure = options.exposure, .view = view};
 }
 
@@ -110,6 +107,7 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
   plan.settings = read_settings(options);
   plan.look = read_look(options, ViewTransform::kStandard);
   plan.film = read_film_options(options.film);
+  plan.run = read_run_plan(command, options.run);
   std::vector<std::string> warnings;
   plan.build = read_build_options(command, options.picture, warnings);
   for (const std::string& warning : warnings) warn("{}", warning);
@@ -138,7 +136,9 @@ void run(const CLI::App& command, const RenderOptions& options) {
       plan_pictures(options.frames, {.frame = {},
                                      .volumes = options.picture.volumes.files,
                                      .outputs = options.outputs,
-                                     .stats = options.stats});
+                                     .stats = options.stats,
+                                     .checkpoint = options.run.checkpoint,
+                                     .resume = options.run.resume});
   const UpAxis up = read_up(options.picture);
   const FilmPlan film = read_film_options(options.film);
   std::vector<std::string> warnings;
@@ -153,7 +153,8 @@ void run(const CLI::App& command, const RenderOptions& options) {
       .color = read_color(options.picture, ColorMode::kRgb),
       .super_voxel = options.picture.super_voxel,
       .sides = read_sides(options.picture),
-      .look = read_look(options, ViewTransform::kNeutral)};
+      .look = read_look(options, ViewTransform::kNeutral),
+      .run = read_run_plan(command, options.run)};
   for (const std::string& warning : warnings) warn("{}", warning);
   if (!options.frames.empty() && !options.picture.periodic.empty() && !plan.sides.extents) {
     fail("--periodic with --frames needs a --domain: that of the voxels may change with them");
@@ -226,6 +227,7 @@ void add_render_command(CLI::App& program, const std::function<double()>& clock)
   options->clock = clock;
   add_output_options(*command, *options);
   add_film_options(*command, options->film);
+  add_run_plan_options(*command, options->run);
   add_method_options(*command, *options);
   add_picture_options(*command, options->picture);
   command->callback([command, options] { run(*command, *options); });

@@ -60,21 +60,15 @@ nlohmann::json volumes_json(const RenderReport& report) {
   return list;
 }
 
-void add_metadata(Image& image, const RenderResult& result, const RenderReport& report) {
-  const WalkSettings& walk = report.settings.walk;
+/// Of what was done.
+void add_metadata(Image& image, const RenderResult& result) {
   const WalkStatistics counts = result.counts.statistics();
   const auto integer = [](uint64_t value) { return static_cast<int64_t>(value); };
-  image.metadata = {
-      {"Software", fmt::format("freepath {}", version())},
+  const std::vector<std::pair<std::string, MetadataValue>> done = {
       {"DateTime", now_text()},
-      {"freepath:version", std::string(version())},
-      {"freepath:volume", volume_names(report)},
-      {"freepath:seed", integer(walk.seed)},
       {"freepath:samples", integer(result.samples)},
       {"freepath:most_samples", integer(result.most_samples)},
       {"freepath:pixels_without_samples", integer(result.pixels_without_samples)},
-      {"freepath:tracker", walk.tracker},
-      {"freepath:transmittance", walk.transmittance},
       {"freepath:seconds", result.seconds},
       {"freepath:paths", integer(result.counts.paths)},
       {"freepath:tentative_collisions", integer(counts.tentative_collisions)},
@@ -86,7 +80,7 @@ void add_metadata(Image& image, const RenderResult& result, const RenderReport& 
       {"freepath:negative_weights", integer(counts.negative_weights)},
       {"freepath:largest_weight", static_cast<double>(counts.largest_weight)},
   };
-  if (report.frame) image.metadata.emplace_back("freepath:frame", int64_t{*report.frame});
+  image.metadata.insert(image.metadata.end(), done.begin(), done.end());
 }
 
 nlohmann::json counts_json(const WalkStatistics& counts) {
@@ -144,6 +138,13 @@ void print_counts(const std::string& method, const char* unit, const WalkStatist
       counted(counts.bound_violations, "bound violation"));
 }
 
+/// What a film's file says.
+FilmHeader header_of(FilmHeader header, const RenderResult& result) {
+  header.counts = result.counts;
+  header.seconds = result.seconds;
+  return header;
+}
+
 /// Keeps a picture that could not be written where it should be; says where.
 [[noreturn]] void keep_elsewhere(const Image& image) {
   const std::string file =
@@ -161,8 +162,9 @@ PictureFilesAside::PictureFilesAside(const std::vector<std::string>& pictures,
   if (!statistics.empty()) statistics_.emplace(statistics);
 }
 
-void PictureFilesAside::write(const OutputPlan& plan, const RenderResult& result,
-                              const RenderReport& report) {
+std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
+                                                  const RenderResult& result,
+                                                  const RenderReport& report) {
   Attempts attempts;
   Image image = result.film.to_image(plan.film.written());
   if (plan.film.denoiser) {
@@ -170,15 +172,27 @@ void PictureFilesAside::write(const OutputPlan& plan, const RenderResult& result
       plan.film.denoiser->denoise(image, result.film.to_image({Layer::kAlbedo, Layer::kNormal}));
     });
   }
-  add_metadata(image, result, report);
+  image.metadata = report.metadata;
+  add_metadata(image, result);
   bool is_kept = false;
+  std::vector<std::string> names;
   for (AsideFile& file : pictures_) {
-    const bool is_written = attempts.attempt([&] { write_image(file, image, plan.look); });
-    is_kept |= is_written && is_exr(file.path());
+    const bool is_film = is_film_file(file.path());
+    const bool is_written = attempts.attempt([&] {
+      if (is_partial(result)) file.retarget(partial_name(file.path()));
+      if (is_film) {
+        write_film(file, header_of(*plan.header, result), result.film);
+      } else {
+        write_image(file, image, plan.look);
+      }
+    });
+    names.push_back(file.path());
+    is_kept |= is_written && (is_film || is_exr(file.path()));
   }
   const bool is_lost = !is_kept && attempts.failed();
   if (statistics_) {
     attempts.attempt([&] {
+      if (is_partial(result)) statistics_->retarget(partial_name(statistics_->path()));
       statistics_->write(json_text(statistics_json(result, report), 2) + '\n');
       statistics_->replace_target();
     });
@@ -186,6 +200,41 @@ void PictureFilesAside::write(const OutputPlan& plan, const RenderResult& result
   if (is_lost) attempts.attempt([&] { keep_elsewhere(image); });
   if (plan.display != nullptr) plan.display->show_last(image);
   attempts.finish();
+  return names;
+}
+
+std::string partial_name(const std::string& file) {
+  const std::filesystem::path path(file);
+  std::filesystem::path name = path.stem();
+  name += ".partial";
+  name += path.extension();
+  return (path.parent_path() / name).string();
+}
+
+bool is_partial(const RenderResult& result) {
+  return result.interrupted || result.pixels_without_samples > 0;
+}
+
+std::vector<std::pair<std::string, MetadataValue>> fixed_metadata(const RenderReport& report) {
+  const WalkSettings& walk = report.settings.walk;
+  std::vector<std::pair<std::string, MetadataValue>> metadata = {
+      {"Software", fmt::format("freepath {}", version())},
+      {"freepath:version", std::string(version())},
+      {"freepath:volume", volume_names(report)},
+      {"freepath:seed", static_cast<int64_t>(walk.seed)},
+      {"freepath:tracker", walk.tracker},
+      {"freepath:transmittance", walk.transmittance},
+  };
+  if (report.frame) metadata.emplace_back("freepath:frame", int64_t{*report.frame});
+  return metadata;
+}
+
+void check_output(const std::string& file) {
+  if (is_film_file(file)) {
+    check_file_place(file);
+  } else {
+    check_writable(file);
+  }
 }
 
 void check_statistics_file(const std::string& file, const std::vector<std::string>& pictures,

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/freepath/film_options.h"
 #include "freepath/io/aside_file.h"
+#include "freepath/paths/film_file.h"
 #include "freepath/paths/renderer.h"
 
 namespace freepath::program {
@@ -39,6 +41,8 @@ struct RenderReport {
   RenderSettings settings;
   int threads = 0;           ///< 0: all
   std::optional<int> frame;  ///< Where the picture belongs to a sequence.
+  /// Of the picture's files, besides what the result tells.
+  std::vector<std::pair<std::string, MetadataValue>> metadata;
 };
 
 /// What is made of a film.
@@ -46,21 +50,40 @@ struct OutputPlan {
   PictureLook look;  ///< Of a .png or .qoi.
   const FilmPlan& film;
   TevDisplay* display = nullptr;  ///< Shows the picture as it is written; may be null.
+  /// What a film's file says besides what the result does; null: none is written.
+  const FilmHeader* header = nullptr;
 };
+
+/// "picture.partial.exr" for "picture.exr": what a part of a picture is called that was to be
+/// whole.
+std::string partial_name(const std::string& file);
+
+/// Whether less was rendered than was asked for.
+bool is_partial(const RenderResult& result);
+
+/// What is known of a picture before it is rendered, for the headers of its files.
+std::vector<std::pair<std::string, MetadataValue>> fixed_metadata(const RenderReport& report);
+
+/// Checks that a picture, or a film, could be written.
+/// @throws Error as check_writable
+void check_output(const std::string& file);
 
 /// The files of a picture, open from before it is rendered, so that what hinders them is told then.
 class PictureFilesAside {
  public:
-  /// @param pictures .exr with layers and metadata, or .png
+  /// @param pictures .exr with layers and metadata, .film, or .png
   /// @param statistics JSON; may be empty: none
   /// @throws Error as AsideFile
   PictureFilesAside(const std::vector<std::string>& pictures, const std::string& statistics);
 
-  /// Writes each, whatever becomes of the others, and shows the picture then.
+  /// Writes each, whatever becomes of the others, and shows the picture then. Where the result is
+  /// partial, they have partial names.
+  /// @return the names of the pictures
   /// @throws Error that names all that failed, once the others are written. A picture that none of
   ///   the files holds with all its layers is then kept in the folder of temporary files, if that
   ///   can be, and the message says where.
-  void write(const OutputPlan& plan, const RenderResult& result, const RenderReport& report);
+  std::vector<std::string> write(const OutputPlan& plan, const RenderResult& result,
+                                 const RenderReport& report);
 
  private:
   std::vector<AsideFile> pictures_;

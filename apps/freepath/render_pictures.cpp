@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,20 +12,13 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/render_output.h"
+#include "apps/freepath/render_run.h"
+#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
 namespace {
-
-/// Refuses to write a picture of nothing, perhaps over one of something.
-void check_not_empty(const RenderResult& result) {
-  if (result.most_samples > 0) return;
-  fail("{} after {:.1f} s, before any pixel had a sample: nothing is written; {}",
-       result.interrupted ? "interrupted" : "the time was up", result.seconds,
-       result.interrupted ? "wait longer, or choose a smaller --size"
-                          : "give more --time, or choose a smaller --size or a thinner volume");
-}
 
 /// The medium of a picture, with the times it took in the report.
 VolumeMedium load_medium(const RenderPlan& plan, const PictureFiles& files, RenderReport& report) {
@@ -76,112 +70,140 @@ std::string settled_tracker(const std::string& tracker, const Medium& medium,
   return choice.tracker;
 }
 
-/// Renders until it is done or the stop is wished, and writes what there is.
+/// Renders a picture and writes it.
 /// @param tracker for the medium: that of the plan may be automatic
-RenderResult render_and_write(const RenderPlan& plan, const PictureFiles& files,
-                              const VolumeMedium& medium, const Stage& stage,
-                              const std::string& tracker, const StopOnInterrupt& stop,
-                              RenderReport& report) {
+RenderOutcome render_stage(const RenderPlan& plan, const PictureFiles& files,
+                           const VolumeMedium& medium, const Stage& stage,
+                           const std::string& tracker, const InputFileLog& log,
+                           const StopOnInterrupt& stop, RenderReport& report) {
   report.settings = plan.settings;
   report.settings.walk.tracker = tracker;
+  if (files.frame && plan.run.seed_per_frame) report.settings.walk.seed += *files.frame;
+  report.settings.crop = plan.film.crop;
   report.threads = plan.settings.threads;
   report.frame = files.frame;
-  RenderSettings& settings = report.settings;
-  settings.layers = plan.film.recorded();
-  settings.crop = plan.film.crop;
-  PictureFilesAside aside(files.outputs, files.stats);
-  const auto display = show_passes(plan.film, files.outputs.front(), settings);
-  const PixelWindow window =
-      pixel_window(settings.crop, stage.camera.width(), stage.camera.height());
-  const ProgressBar bar(std::size_t(window.width) * window.height, settings.time_limit);
   const PathScene scene = make_volume_scene(medium, stage.camera, plan.surroundings, stage.ground);
-  RenderResult result =
-      render_scene(scene, plan.color, settings, [&](const RenderProgress& progress) {
-        bar.show(progress);
-        return !stop.requested();
-      });
-  bar.finish();
-  check_not_empty(result);
-  report.seconds_render = result.seconds;
-  aside.write({plan.look, plan.film, display.get()}, result, report);
-  return result;
+  return render_and_write({.scene = scene,
+                           .color = plan.color,
+                           .film = plan.film,
+                           .run = plan.run,
+                           .look = plan.look,
+                           .outputs = files.outputs,
+                           .stats = files.stats,
+                           .checkpoint = files.checkpoint,
+                           .resume = files.resume,
+                           .files = log},
+                          report, stop);
 }
 
 /// "frame 3 (3 of 48): 64 samples per pixel in 0:12, wrote picture.0003.exr"
-void print_frame(std::size_t index, std::size_t count, const PictureFiles& files,
-                 const RenderResult& result, const RenderReport& report) {
-  std::string written;
-  for (const std::string& output : files.outputs) {
-    if (!written.empty()) written += ", ";
-    written += output;
-  }
-  tell("frame {} ({} of {}): {}{} per pixel in {}, wrote {}\n", *files.frame, index + 1, count,
+void print_frame(std::size_t index, std::size_t count, int frame, const RenderOutcome& outcome,
+                 const RenderReport& report) {
+  const RenderResult& result = outcome.result;
+  tell("frame {} ({} of {}): {}{} per pixel in {}, wrote {}\n", frame, index + 1, count,
        result.interrupted ? "interrupted after " : "", samples_text(result),
-       clock_text(report.seconds_load + report.seconds_build + report.seconds_render), written);
+       clock_text(report.seconds_load + report.seconds_build + report.seconds_render),
+       fmt::join(outcome.written, ", "));
   print_warnings(result, report);
   require_no_overflows(result);
 }
 
-/// Numbers of the frames from `begin` on, before `end`.
-std::string frame_list(const std::vector<PictureFiles>& frames, std::size_t begin,
-                       std::size_t end) {
-  std::vector<int> numbers;
-  for (std::size_t i = begin; i < end; ++i) numbers.push_back(*frames[i].frame);
-  return format_frames(numbers);
-}
+/// The frames of a sequence, and how far it has come.
+class Sequence {
+ public:
+  Sequence(const RenderPlan& plan, const std::vector<PictureFiles>& frames)
+      : plan_(plan), frames_(frames) {}
 
-/// Says how far a sequence came that did not come to its end.
-/// @param done how many frames are complete
-void print_unfinished(const std::vector<PictureFiles>& frames, std::size_t done) {
-  if (done == frames.size()) return;
-  const std::string finished =
-      done == 0 ? "no frame is" : fmt::format("--frames {} are", frame_list(frames, 0, done));
-  tell("{} done; to render the others, give --frames {}\n", finished,
-       frame_list(frames, done, frames.size()));
-}
+  void run() {
+    const StopOnInterrupt stop;
+    for (std::size_t i = 0; i < frames_.size() && !stop.requested(); ++i) {
+      const int frame = *frames_[i].frame;
+      if (plan_.run.skip_existing && is_rendered(frames_[i].outputs, frames_[i].stats)) {
+        tell("frame {} ({} of {}): is there already\n", frame, i + 1, frames_.size());
+        done_.insert(frame);
+        continue;
+      }
+      try {
+        if (render(i, stop)) done_.insert(frame);
+      } catch (const Error& error) {
+        if (stop.requested()) {
+          print_unfinished();
+          fail("frame {}: {}", frame, error.what());
+        }
+        tell("freepath: error: frame {}: {}\n", frame, error.what());
+        failed_.push_back(frame);
+      }
+    }
+    print_unfinished();
+    if (!failed_.empty()) {
+      fail("{} of {} failed: --frames {}", counted(failed_.size(), "frame"), frames_.size(),
+           format_frames(failed_));
+    }
+    if (stop.requested()) note_partial_result();
+  }
+
+ private:
+  /// @return whether the frame is complete
+  bool render(std::size_t i, const StopOnInterrupt& stop) {
+    RenderReport report;
+    const InputFileLog log;
+    const VolumeMedium medium = load_medium(plan_, frames_[i], report);
+    Stopwatch watch;
+    if (!stage_) stage_ = frame_sequence(plan_, std::span(frames_).subspan(i), *medium.medium);
+    tracker_ = settled_tracker(plan_.settings.walk.tracker, *medium.medium, tracker_);
+    report.seconds_build += watch.lap();
+    if (stop.requested()) {
+      if (i > 0) return false;
+      fail("interrupted before it was rendered: nothing is written; wait longer");
+    }
+    const RenderOutcome outcome =
+        render_stage(plan_, frames_[i], medium, *stage_, tracker_, log, stop, report);
+    print_frame(i, frames_.size(), *frames_[i].frame, outcome, report);
+    return !is_partial(outcome.result);
+  }
+
+  /// Says how far a sequence came that did not come to its end.
+  void print_unfinished() const {
+    std::vector<int> done, left;
+    for (const PictureFiles& files : frames_) {
+      (done_.contains(*files.frame) ? done : left).push_back(*files.frame);
+    }
+    if (left.empty()) return;
+    tell("{} done; to render the others, give --frames {}\n",
+         done.empty() ? "no frame is" : fmt::format("--frames {} are", format_frames(done)),
+         format_frames(left));
+  }
+
+  const RenderPlan& plan_;
+  const std::vector<PictureFiles>& frames_;
+  std::optional<Stage> stage_;
+  std::string tracker_;
+  std::set<int> done_;
+  std::vector<int> failed_;
+};
 
 }  // namespace
 
 void render_picture(const RenderPlan& plan, const PictureFiles& files) {
+  if (plan.run.skip_existing && is_rendered(files.outputs, files.stats)) {
+    tell("{}: is there already\n", fmt::join(files.outputs, ", "));
+    return;
+  }
   RenderReport report;
+  const InputFileLog log;
   const VolumeMedium medium = load_medium(plan, files, report);
   Stopwatch watch;
   const Stage stage = make_stage(plan, *medium.medium);
   const std::string tracker = settled_tracker(plan.settings.walk.tracker, *medium.medium);
   report.seconds_build += watch.lap();
   const StopOnInterrupt stop;
-  const RenderResult result = render_and_write(plan, files, medium, stage, tracker, stop, report);
-  print_summary(files.outputs, result, report);
+  const RenderOutcome outcome =
+      render_stage(plan, files, medium, stage, tracker, log, stop, report);
+  print_summary(outcome.written, outcome.result, report);
 }
 
 void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& frames) {
-  const StopOnInterrupt stop;
-  std::optional<Stage> stage;
-  std::string tracker;
-  std::size_t done = 0;
-  for (std::size_t i = 0; i < frames.size() && !stop.requested(); ++i) {
-    const PictureFiles& files = frames[i];
-    try {
-      RenderReport report;
-      const VolumeMedium medium = load_medium(plan, files, report);
-      Stopwatch watch;
-      if (!stage) stage = frame_sequence(plan, std::span(frames).subspan(i), *medium.medium);
-      tracker = settled_tracker(plan.settings.walk.tracker, *medium.medium, tracker);
-      report.seconds_build += watch.lap();
-      if (stop.requested()) {
-        if (i > 0) break;
-        fail("interrupted before it was rendered: nothing is written; wait longer");
-      }
-      const RenderResult result =
-          render_and_write(plan, files, medium, *stage, tracker, stop, report);
-      print_frame(i, frames.size(), files, result, report);
-      if (!result.interrupted) ++done;
-    } catch (const Error& error) {
-      print_unfinished(frames, done);
-      fail("frame {}: {}", *files.frame, error.what());
-    }
-  }
-  print_unfinished(frames, done);
+  Sequence(plan, frames).run();
 }
 
 }  // namespace freepath::program

@@ -7,6 +7,7 @@
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/frames.h"
 #include "apps/freepath/render_volumes.h"
+#include "apps/freepath/run_plan.h"
 #include "freepath/scene/volume_camera.h"
 #include "freepath/scene/volume_scene.h"
 
@@ -14,7 +15,7 @@ namespace freepath::program {
 
 /// What all pictures of a command have in common.
 struct RenderPlan {
-  RenderSettings settings;          ///< The seed, too, is the same for all frames.
+  RenderSettings settings;          ///< Of frames, their number is added to the seed.
   std::vector<VolumePlan> volumes;  ///< Each picture has files of its own for them.
   FilmPlan film;
   CameraOptions camera;
@@ -25,6 +26,7 @@ struct RenderPlan {
   int super_voxel = 0;
   PeriodicSides sides;
   PictureLook look;
+  RunPlan run;
 };
 
 /// Renders and writes a picture; Ctrl-C while it is rendered ends it early.
@@ -32,9 +34,9 @@ struct RenderPlan {
 void render_picture(const RenderPlan& plan, const PictureFiles& files);
 
 /// Renders and writes the frames one after the other, with a line on each. All are seen by the
-/// camera of the first one. Ctrl-C ends the frame under way early and the sequence with it, and
-/// what is done is told.
-/// @throws Error as render_picture, naming the frame
+/// camera of the first one. Of a frame that fails is told why, and the others are rendered. Ctrl-C
+/// ends the frame under way early and the sequence with it, and what is done is told.
+/// @throws Error that names the frames that failed
 void render_frames(const RenderPlan& plan, const std::vector<PictureFiles>& frames);
 
 }  // namespace freepath::program

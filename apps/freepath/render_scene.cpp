@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "apps/freepath/console.h"
+#include "apps/freepath/parse.h"
 #include "apps/freepath/progress_bar.h"
 #include "apps/freepath/render_output.h"
+#include "apps/freepath/render_run.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 #include "freepath/paths/renderer.h"
@@ -28,7 +30,7 @@ std::vector<std::string> outputs_of(const ScenePlan& plan, const BuiltScene& bui
     }
     outputs.push_back(built.picture.file_name);
   }
-  for (const std::string& output : outputs) check_writable(output);
+  for (const std::string& output : outputs) check_output(output);
   return outputs;
 }
 
@@ -66,12 +68,20 @@ void render_scene_file(const ScenePlan& plan) {
   check_statistics_file(plan.stats, plan.outputs, {plan.file});
   RenderReport report;
   Stopwatch watch;
+  const InputFileLog log;
   Diagnostics diagnostics;
   BuiltScene built = load_scene(plan.file, diagnostics, plan.build);
   for (const std::string& warning : diagnostics.warnings()) {
     warn("{}", warning);
   }
   const std::vector<std::string> outputs = outputs_of(plan, built);
+  if (plan.run.skip_existing && is_rendered(outputs, plan.stats)) {
+    tell("{}: is there already\n", fmt::join(outputs, ", "));
+    return;
+  }
+  if (!plan.run.checkpoint.empty()) {
+    read_option("--checkpoint", [&] { check_file_place(plan.run.checkpoint); });
+  }
   report.settings = settle(plan, built);
   report.threads = plan.settings.threads;
   report.volumes.push_back({plan.file, {}});
@@ -86,28 +96,19 @@ void render_scene_file(const ScenePlan& plan) {
 
   FilmPlan film = plan.film;
   if (!film.layers && built.picture.all_layers) film.layers = LayerSet::all();
-  report.settings.layers = film.recorded();
-  const Camera& camera = *built.scene.camera;
-  const PixelWindow window = pixel_window(report.settings.crop, camera.width(), camera.height());
-  check_memory(window, film, report.settings.buckets);
-  PictureFilesAside aside(outputs, plan.stats);
-  const auto display = show_passes(film, outputs.front(), report.settings);
-
   const StopOnInterrupt stop;
-  const ProgressBar bar(std::size_t(window.width) * window.height, plan.settings.time_limit);
-  const RenderResult result =
-      render_scene(built.scene, plan.color, report.settings, [&](const RenderProgress& progress) {
-        bar.show(progress);
-        return !stop.requested();
-      });
-  bar.finish();
-  if (result.most_samples == 0) {
-    fail("{} after {:.1f} s, before any pixel had a sample: nothing is written",
-         result.interrupted ? "interrupted" : "the time was up", result.seconds);
-  }
-  report.seconds_render = result.seconds;
-  aside.write({plan.look, film, display.get()}, result, report);
-  print_summary(outputs, result, report);
+  const RenderOutcome outcome = render_and_write({.scene = built.scene,
+                                                  .color = plan.color,
+                                                  .film = film,
+                                                  .run = plan.run,
+                                                  .look = plan.look,
+                                                  .outputs = outputs,
+                                                  .stats = plan.stats,
+                                                  .checkpoint = plan.run.checkpoint,
+                                                  .resume = plan.run.resume,
+                                                  .files = log},
+                                                 report, stop);
+  print_summary(outcome.written, outcome.result, report);
 }
 
 }  // namespace freepath::program

@@ -8,6 +8,7 @@
 
 #include "apps/freepath/film_options.h"
 #include "apps/freepath/parse.h"
+#include "apps/freepath/run_plan.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/renderer.h"
 #include "freepath/scene/assembly/scene_builder.h"
@@ -29,6 +30,7 @@ struct ScenePlan {
   BuildOptions build;
   PictureLook look;
   FilmPlan film;  ///< Its crop goes before the scene's.
+  RunPlan run;
 };
 
 /// Whether a file is a scene, by its name: *.pbrt or *.pbrt.gz.

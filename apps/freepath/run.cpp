@@ -91,6 +91,7 @@ int run_command(int argc, const char* const* argv, const std::function<double()>
   program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   program.footer("freepath COMMAND --help explains a command, with examples.");
   add_render_command(program, clock);
+  add_merge_command(program);
   add_info_command(program);
   add_generate_command(program);
   add_flux_command(program);

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <system_error>
 
@@ -14,7 +15,27 @@ namespace {
 
 std::string reason_of(int number) { return std::generic_category().message(number); }
 
+std::atomic<InputFileLog*> current_log = nullptr;
+
 }  // namespace
+
+InputFileLog::InputFileLog() { current_log = this; }
+
+InputFileLog::~InputFileLog() { current_log = nullptr; }
+
+std::vector<std::string> InputFileLog::names() const {
+  const std::lock_guard lock(mutex_);
+  return {names_.begin(), names_.end()};
+}
+
+void InputFileLog::note(const std::filesystem::path& path) {
+  InputFileLog* const log = current_log;
+  if (log == nullptr) return;
+  std::error_code error;
+  const std::filesystem::path name = std::filesystem::weakly_canonical(path, error);
+  const std::lock_guard lock(log->mutex_);
+  log->names_.insert((error ? path : name).string());
+}
 
 InputFile::InputFile(const std::filesystem::path& path, std::string_view kind)
     : name_(path.string()) {
@@ -33,6 +54,7 @@ InputFile::InputFile(const std::filesystem::path& path, std::string_view kind)
     fail("{}: is a pipe or a device, not a regular file; name {}", name_, kind);
   }
   size_ = static_cast<uint64_t>(status.st_size);
+  InputFileLog::note(path);
 }
 
 InputFile::~InputFile() { close(descriptor_); }

@@ -5,11 +5,32 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace freepath {
+
+/// While one of these lives, keeps the names of the files that are opened; one at a time.
+class InputFileLog {
+ public:
+  InputFileLog();
+  ~InputFileLog();
+  InputFileLog(const InputFileLog&) = delete;
+  InputFileLog& operator=(const InputFileLog&) = delete;
+
+  /// Their absolute names, without links, sorted.
+  std::vector<std::string> names() const;
+  /// Called for each file that is opened, by any thread.
+  static void note(const std::filesystem::path& path);
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<std::string> names_;
+};
 
 /// An open regular file. Pipes and devices are refused, since they may make a reader wait or never
 /// end. Every error names the file.

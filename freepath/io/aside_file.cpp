@@ -131,6 +131,12 @@ void AsideFile::open_named() {
   if (!made) give_up(reason_of(errno));
 }
 
+void AsideFile::retarget(const std::string& path) {
+  check_file_place(path);
+  path_ = path;
+  target_ = resolved(path);
+}
+
 std::string AsideFile::name() const {
   const std::string own = process_name(descriptor_);
   return aside_.empty() || access(own.c_str(), W_OK) == 0 ? own : aside_.string();

@@ -37,6 +37,8 @@ class AsideFile {
 
   /// The target as it was given, for messages.
   const std::string& path() const { return path_; }
+  /// Gives it another target in the same folder. @throws Error as check_file_place
+  void retarget(const std::string& path);
   /// What to open to write to it; opened again, it is begun anew.
   std::string name() const;
   /// Writes it as a whole. @throws Error that names the target

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 
-#include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 
 namespace freepath {
@@ -114,10 +113,9 @@ class SeedMerger {
 
   [[noreturn]] void missing(uint32_t first, uint32_t end, int x, int y) const {
     fail(
-        "no part has {}, where others have more: of {}; add the part that is missing, or take "
-        "what there is by --partial",
-        place_text(first, end, x, y),
-        parts_.size() == 1 ? parts_[0].file : counted(parts_.size(), "part"));
+        "no part has {}, though others go further; add the part that is missing, or take what "
+        "there is by --partial",
+        place_text(first, end, x, y));
   }
 
   Film& film_;

@@ -1,0 +1,68 @@
+#include "freepath/paths/noise_target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "freepath/base/error.h"
+
+namespace freepath {
+namespace {
+
+/// Seeds of pilots differ from those of their pictures.
+constexpr uint64_t kPilotSeed = 0x6A09E667F3BCC908U;
+constexpr uint32_t kFirstPilot = 4;
+constexpr double kShareOfPilot = 1.0 / 16;
+/// More samples than the pilot asks for, by its own noise and that of the picture.
+constexpr double kMargin = 1.05;
+constexpr double kMostSamples = 1U << 30;
+
+}  // namespace
+
+double relative_noise(const Film& film) {
+  double sum = 0;
+  double variance = 0;
+  for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < kChannels; ++channel) {
+      sum += film.mean(pixel, channel);
+      variance += film.variance(pixel, channel);
+    }
+  }
+  if (variance == 0) return 0;
+  const double values = static_cast<double>(film.pixel_count()) * kChannels;
+  return std::sqrt(variance / values) / std::abs(sum / values);
+}
+
+NoisePlan plan_noise(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
+                     double noise, const ProgressFunction& progress) {
+  RenderSettings pilot = settings;
+  pilot.walk.seed ^= kPilotSeed;
+  pilot.first_sample = 0;
+  pilot.time_limit = 0;
+  pilot.layers = {};
+  pilot.buckets = {};
+  pilot.on_pass = {};
+  pilot.on_checkpoint = {};
+  pilot.before = {};
+  const double most = settings.samples > 0 ? settings.samples : kMostSamples;
+  NoisePlan plan;
+  for (pilot.samples = kFirstPilot;; pilot.samples *= 2) {
+    RenderResult result = render_scene(scene, mode, pilot, progress);
+    plan.interrupted = result.interrupted;
+    if (plan.interrupted) return plan;
+    plan.pilot_samples = pilot.samples;
+    plan.pilot_noise = relative_noise(result.film);
+    if (!std::isfinite(plan.pilot_noise)) {
+      fail("the noise of this picture is not known, as the variance of a pixel is infinite");
+    }
+    const double needed =
+        kMargin * pilot.samples * (plan.pilot_noise / noise) * (plan.pilot_noise / noise);
+    plan.samples = static_cast<uint32_t>(std::clamp(std::ceil(needed), 2.0, std::max(2.0, most)));
+    if (pilot.samples >= kShareOfPilot * plan.samples) return plan;
+    pilot.before = std::make_shared<RenderedBefore>(
+        RenderedBefore{std::move(result.film), result.counts, result.seconds});
+  }
+}
+
+}  // namespace freepath
