@@ -38,24 +38,27 @@ std::vector<float> packed(const Image& image, const std::array<const char*, kRgb
   return values;
 }
 
-/// Replaces R, G, B, and appends what they were.
-void put_denoised(Image& image, const std::vector<float>& denoised) {
-  const std::array<int, kRgb> colour = colour_channels(image, "the picture");
+/// Replaces channels, and appends what they were.
+/// @param denoised three values of each pixel, of which the first ones are taken
+void put_denoised(Image& image, const std::vector<const char*>& names,
+                  const std::vector<float>& denoised) {
+  std::vector<int> replaced;
+  for (const char* name : names) replaced.push_back(find_channel(image, name).value());
   const std::size_t before = image.channels.size();
   std::vector<float> values;
-  values.reserve(image.pixel_count() * (before + kRgb));
+  values.reserve(image.pixel_count() * (before + names.size()));
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
     const float* const old = image.values.data() + pixel * before;
     const std::size_t begin = values.size();
     values.insert(values.end(), old, old + before);
-    for (int c = 0; c < kRgb; ++c) {
-      values.push_back(old[colour[c]]);
-      values[begin + colour[c]] = denoised[pixel * kRgb + c];
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      values.push_back(old[replaced[c]]);
+      values[begin + replaced[c]] = denoised[pixel * kRgb + c];
     }
   }
   // All at once, lest an image be left that is neither.
   std::vector<std::string> channels = image.channels;
-  for (const char* name : {"noisy.R", "noisy.G", "noisy.B"}) channels.emplace_back(name);
+  for (const char* name : names) channels.push_back(std::string("noisy.") + name);
   image.channels = std::move(channels);
   image.values = std::move(values);
 }
@@ -157,11 +160,8 @@ std::shared_ptr<const Denoiser> Denoiser::load() {
       "FREEPATH_OIDN=oidn names that folder, or any other that it is in");
 }
 
-void Denoiser::denoise(Image& image, const Image& guides) const {
-  constexpr float kLargest = 1e30F;
-  std::vector<float> colour = packed(image, {"R", "G", "B"}, 0, kLargest);
-  std::vector<float> albedo = packed(guides, {"albedo.R", "albedo.G", "albedo.B"}, 0, 1);
-  std::vector<float> normal = packed(guides, {"normal.X", "normal.Y", "normal.Z"}, -1, 1);
+std::vector<float> Denoiser::filter(int width, int height, std::vector<float> colour,
+                                    std::vector<float> albedo, std::vector<float> normal) const {
   std::vector<float> denoised(colour.size());
   const Functions& oidn = *functions_;
   void* const device = oidn.new_device(kCpuDevice);
@@ -169,7 +169,7 @@ void Denoiser::denoise(Image& image, const Image& guides) const {
   oidn.commit_device(device);
   void* const filter = oidn.new_filter(device, "RT");
   const auto set = [&](const char* name, std::vector<float>& values) {
-    oidn.set_image(filter, name, values.data(), kFloat3, image.width, image.height, 0, 0, 0);
+    oidn.set_image(filter, name, values.data(), kFloat3, width, height, 0, 0, 0);
   };
   if (filter != nullptr) {
     set("color", colour);
@@ -186,7 +186,32 @@ void Denoiser::denoise(Image& image, const Image& guides) const {
   const std::string reason = message == nullptr ? "unknown reason" : message;
   oidn.release_device(device);
   if (failed || filter == nullptr) fail("Open Image Denoise: {}", reason);
-  put_denoised(image, denoised);
+  return denoised;
+}
+
+void Denoiser::denoise(Image& image, const Image& guides, bool with_alpha) const {
+  constexpr float kLargest = 1e30F;
+  const bool has_background = find_channel(guides, "background.R").has_value();
+  std::vector<float> colour = packed(image, {"R", "G", "B"}, -kLargest, kLargest);
+  std::vector<float> background(colour.size());
+  if (has_background) {
+    background =
+        packed(guides, {"background.R", "background.G", "background.B"}, -kLargest, kLargest);
+  }
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    colour[i] = std::max(0.0F, colour[i] - background[i]);
+  }
+  const std::vector<float> albedo = packed(guides, {"albedo.R", "albedo.G", "albedo.B"}, 0, 1);
+  const std::vector<float> normal = packed(guides, {"normal.X", "normal.Y", "normal.Z"}, -1, 1);
+  std::vector<float> denoised = filter(image.width, image.height, colour, albedo, normal);
+  for (std::size_t i = 0; i < denoised.size(); ++i) denoised[i] += background[i];
+  std::vector<float> alpha;
+  if (with_alpha) {
+    alpha = filter(image.width, image.height, packed(image, {"A", "A", "A"}, 0, 1), albedo, normal);
+    for (float& value : alpha) value = std::clamp(value, 0.0F, 1.0F);
+  }
+  put_denoised(image, {"R", "G", "B"}, denoised);
+  if (with_alpha) put_denoised(image, {"A"}, alpha);
 }
 
 }  // namespace freepath::program

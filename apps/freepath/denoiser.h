@@ -2,6 +2,7 @@
 /// @file Open Image Denoise, where it is installed: loaded when it is asked for.
 
 #include <memory>
+#include <vector>
 
 #include "freepath/io/image.h"
 
@@ -19,15 +20,21 @@ class Denoiser {
   Denoiser(const Denoiser&) = delete;
   Denoiser& operator=(const Denoiser&) = delete;
 
-  /// Denoises R, G, B and keeps what they were as noisy.{R,G,B}.
-  /// @param guides of the same pixels, with albedo.{R,G,B} and normal.{X,Y,Z}
+  /// Denoises R, G, B, and A where it is asked for, and keeps what they were as noisy.{R,G,B,A}.
+  /// Light from outside that is seen without a scattering stays as it is: it is taken out before, and
+  /// added after, so that a sky or a sun behind the scene bleeds into nothing.
+  /// @param guides of the same pixels, with albedo.{R,G,B} and normal.{X,Y,Z}, and with
+  ///   background.{R,G,B} where R, G, B contain it
   /// @throws Error with the library's message
-  void denoise(Image& image, const Image& guides) const;
+  void denoise(Image& image, const Image& guides, bool with_alpha) const;
 
  private:
   struct Functions;
 
   Denoiser();
+  /// @param colour,albedo,normal three channels of pixels, packed
+  std::vector<float> filter(int width, int height, std::vector<float> colour,
+                            std::vector<float> albedo, std::vector<float> normal) const;
 
   void* library_ = nullptr;
   std::unique_ptr<Functions> functions_;

@@ -43,7 +43,58 @@ Crop parse_crop(const std::string& text) {
   return crop;
 }
 
+/// "half,dwaa:45": a precision, a compression, or both, in any order.
+ExrFormat parse_exr(const std::string& text) {
+  struct Word {
+    std::string_view name;
+    std::optional<ExrPrecision> precision;
+    std::optional<ExrCompression> compression;
+  };
+  using enum ExrCompression;
+  const std::array words{Word{"float", ExrPrecision::kFloat, {}},
+                         Word{"half", ExrPrecision::kHalf, {}},
+                         Word{"none", {}, kNone},
+                         Word{"zip", {}, kZip},
+                         Word{"zips", {}, kZips},
+                         Word{"piz", {}, kPiz},
+                         Word{"dwaa", {}, kDwaa},
+                         Word{"dwab", {}, kDwab}};
+  ExrFormat format;
+  std::string_view rest = text;
+  while (true) {
+    const std::string_view item = rest.substr(0, rest.find(','));
+    const std::size_t colon = item.find(':');
+    const std::string_view name = item.substr(0, colon);
+    const auto* const word = std::find_if(words.begin(), words.end(),
+                                          [&](const Word& known) { return known.name == name; });
+    if (word == words.end()) {
+      fail("--exr: '{}' is none of float, half, none, zip, zips, piz, dwaa:LEVEL, dwab:LEVEL", name);
+    }
+    if (word->precision) format.precision = *word->precision;
+    if (word->compression) format.compression = *word->compression;
+    if (colon != std::string_view::npos) {
+      const std::vector<double> level =
+          parse_numbers(std::string(item.substr(colon + 1)), "--exr");
+      const bool is_dwa = word->compression == kDwaa || word->compression == kDwab;
+      if (!is_dwa || level.size() != 1 || !(level[0] >= 0 && level[0] <= 1e5)) {
+        fail("--exr: '{}' has a level; dwaa and dwab alone have one, of 0 to 100000", item);
+      }
+      format.dwa_level = static_cast<float>(level[0]);
+    }
+    if (rest.size() == item.size()) return format;
+    rest.remove_prefix(item.size() + 1);
+  }
+}
+
 }  // namespace
+
+void add_exr_option(CLI::App& command, std::string& text) {
+  command
+      .add_option("--exr", text,
+                  "Form of an .exr: float or half, and none, zip, zips, piz, dwaa:LEVEL or "
+                  "dwab:LEVEL, as in half,dwaa:45 [float,zip]")
+      ->group("Picture");
+}
 
 void add_film_options(CLI::App& command, FilmOptions& o) {
   command
@@ -56,6 +107,12 @@ void add_film_options(CLI::App& command, FilmOptions& o) {
       .add_option("--crop", o.crop,
                   "Render a part alone, X0,Y0,X1,Y1 from the top left, the last two outside: in "
                   "pixels, or where any has a point in fractions, as in 0.0,0.5,1.0,1.0")
+      ->group("Picture");
+  add_exr_option(command, o.exr);
+  command
+      .add_flag("--transparent", o.transparent,
+                "Let light from outside, environment and sun, light the scene but not be seen behind "
+                "it: R, G and B are without a background, premultiplied by A")
       ->group("Picture");
   command
       .add_flag("--denoise", o.denoise,
@@ -74,6 +131,8 @@ FilmPlan read_film_options(const FilmOptions& options) {
     plan.layers = read_option("--layers", [&] { return parse_layers(options.layers); });
   }
   if (!options.crop.empty()) plan.crop = parse_crop(options.crop);
+  if (!options.exr.empty()) plan.exr = parse_exr(options.exr);
+  plan.transparent = options.transparent;
   if (!options.display.empty()) plan.display = parse_display(options.display);
   if (options.denoise) plan.denoiser = Denoiser::load();
   return plan;

@@ -19,9 +19,13 @@ namespace freepath::program {
 
 /// The options as they were typed.
 struct FilmOptions {
-  std::string layers, crop, display;
+  std::string layers, crop, display, exr;
   bool denoise = false;
+  bool transparent = false;
 };
+
+/// What a denoiser looks at; it leaves the background as it is.
+inline constexpr LayerSet kDenoiserLayers = {Layer::kAlbedo, Layer::kNormal, Layer::kBackground};
 
 /// What they mean.
 struct FilmPlan {
@@ -29,13 +33,14 @@ struct FilmPlan {
   std::optional<Crop> crop;
   std::shared_ptr<const Denoiser> denoiser;  ///< Null: none.
   std::optional<DisplayAddress> display;
+  ExrFormat exr;
+  /// Whether light from outside lights the scene but isn't seen behind it.
+  bool transparent = false;
 
   /// Layers that a picture gets.
   LayerSet written() const { return layers.value_or(LayerSet::standard()); }
   /// Layers to record: a denoiser looks at more than is written.
-  LayerSet recorded() const {
-    return denoiser ? written().with({Layer::kAlbedo, Layer::kNormal}) : written();
-  }
+  LayerSet recorded() const { return denoiser ? written().with(kDenoiserLayers) : written(); }
 };
 
 void add_film_options(CLI::App& command, FilmOptions& options);
@@ -45,6 +50,9 @@ FilmPlan read_film_options(const FilmOptions& options);
 
 /// "standard" or "neutral". @throws Error naming --view
 ViewTransform read_view(const std::string& text);
+
+/// Adds --exr, to a command that writes pictures.
+void add_exr_option(CLI::App& command, std::string& text);
 
 /// Refuses a picture that this machine's memory can't hold: it would end the program, or others.
 void check_memory(const PixelWindow& window, const FilmPlan& plan,

@@ -59,6 +59,10 @@ RenderReport report_of(const FilmHeader& header, PictureLook& look) {
       MetadataValue read;
       if (value.is_string()) {
         read = value.get<std::string>();
+      } else if (value.is_array()) {
+        Matrix4d matrix;
+        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = value.at(i);
+        read = matrix;
       } else if (value.is_number_integer()) {
         read = value.get<int64_t>();
       } else {
@@ -132,6 +136,7 @@ void add_merge_command(CLI::App& program) {
   command->add_option("--stats", options->stats, "Write statistics to a JSON file");
   command->add_option("--layers", options->film.layers,
                       "Layers of an .exr, as of `freepath render` [those of the parts]");
+  add_exr_option(*command, options->film.exr);
   command->add_flag("--denoise", options->film.denoise,
                     "Denoise the colour by Open Image Denoise, where that is installed");
   command->add_option("--exposure", options->exposure, "Exposure of a .png or .qoi [stops]")

@@ -169,7 +169,11 @@ std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
   Image image = result.film.to_image(plan.film.written());
   if (plan.film.denoiser) {
     attempts.attempt([&] {
-      plan.film.denoiser->denoise(image, result.film.to_image({Layer::kAlbedo, Layer::kNormal}));
+      // What is transparent has no background to be kept.
+      const LayerSet guides = plan.film.transparent
+                                  ? LayerSet{Layer::kAlbedo, Layer::kNormal}
+                                  : kDenoiserLayers;
+      plan.film.denoiser->denoise(image, result.film.to_image(guides), plan.film.transparent);
     });
   }
   image.metadata = report.metadata;
@@ -183,7 +187,7 @@ std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
       if (is_film) {
         write_film(file, header_of(*plan.header, result), result.film);
       } else {
-        write_image(file, image, plan.look);
+        write_image(file, image, plan.look, plan.film.exr);
       }
     });
     names.push_back(file.path());

@@ -16,11 +16,17 @@
 namespace freepath::program {
 namespace {
 
+nlohmann::json json_of(const auto& value) { return value; }
+nlohmann::json json_of(const Matrix4d& matrix) {
+  const double* const values = matrix.getValue();
+  return std::vector<double>(values, values + 16);
+}
+
 /// What merging needs to know to write the picture as rendering does.
 std::string notes_of(const RenderReport& report, const PictureLook& look) {
   nlohmann::json metadata = nlohmann::json::array();
   for (const auto& [name, value] : report.metadata) {
-    metadata.push_back(std::visit([&](const auto& v) { return nlohmann::json{name, v}; }, value));
+    metadata.push_back({name, std::visit([](const auto& v) { return json_of(v); }, value)});
   }
   return json_text(nlohmann::json{{"metadata", metadata}, {"view", static_cast<int>(look.view)}});
 }
@@ -146,11 +152,16 @@ RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
     settings.samples = job.run.samples->count;
   }
   settings.layers = job.film.recorded();
+  settings.transparent = job.film.transparent;
   const WavelengthBuckets buckets =
       job.color == ColorMode::kSpectral ? settings.buckets : WavelengthBuckets{};
   check_memory(window, job.film, buckets);
   PictureFilesAside aside(job.outputs, job.stats);
   report.metadata = fixed_metadata(report);
+  report.metadata.emplace_back("worldToCamera", camera.camera_from_world());
+  if (const std::optional<Matrix4d> ndc = camera.ndc_from_world()) {
+    report.metadata.emplace_back("worldToNDC", *ndc);
+  }
   FilmHeader header;
   header.region = region;
   header.window = window;

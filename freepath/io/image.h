@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "freepath/base/rgb_primaries.h"
+#include "freepath/base/vector.h"
 #include "freepath/io/view_transform.h"
 
 namespace freepath {
 
-/// A value of an image's metadata.
-using MetadataValue = std::variant<int64_t, double, std::string>;
+/// A value of an image's metadata; matrices are for points as rows.
+using MetadataValue = std::variant<int64_t, double, std::string, Matrix4d>;
 
 /// Pixels with named channels. Row 0 is the top; values are linear.
 struct Image {
@@ -81,17 +82,37 @@ void check_writable(const std::string& path);
 /// How values are stored in an EXR file.
 enum class ExrPrecision {
   kFloat,
-  kHalf  ///< Values beyond ±65504 are stored as ±65504.
+  /// Of 16 bits, but for depths, positions, counts and variances, which need more. Values beyond
+  /// ±65504 are stored as ±65504.
+  kHalf
 };
 
-/// Writes all channels and the metadata to an EXR file (ZIP compression). Integers of the metadata
+/// How an EXR file is packed.
+enum class ExrCompression {
+  kNone,
+  kZip,   ///< 16 rows at a time.
+  kZips,  ///< Row by row, for programs that read rows.
+  kPiz,   ///< Wavelets, which suit grain.
+  kDwaa,  ///< Not exact: like JPEG, 32 rows at a time.
+  kDwab   ///< The same, 256 rows at a time.
+};
+
+/// The form of an EXR file.
+struct ExrFormat {
+  ExrPrecision precision = ExrPrecision::kFloat;
+  ExrCompression compression = ExrCompression::kZip;
+  /// Of kDwaa and kDwab: the larger, the smaller the file and the worse the picture.
+  float dwa_level = 45;
+};
+
+/// Writes all channels and the metadata to an EXR file. Integers of the metadata
 /// that need more than 32 bits are stored as decimal text, since EXR has no wider type.
 ///
 /// The file is written aside, in the same folder, and then renamed: a reader never sees half of it,
 /// and an old one survives a failure.
 /// @throws Error that names the file
 void write_exr(const std::string& path, const Image& image,
-               ExrPrecision precision = ExrPrecision::kFloat);
+               const ExrFormat& format = {});
 
 /// How light becomes a picture of 8 bits.
 struct PictureLook {

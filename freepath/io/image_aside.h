@@ -9,7 +9,7 @@
 namespace freepath {
 
 /// Writes an EXR file as the function of that name for paths does.
-void write_exr(AsideFile& file, const Image& image, ExrPrecision precision = ExrPrecision::kFloat);
+void write_exr(AsideFile& file, const Image& image, const ExrFormat& format = {});
 
 /// Writes a PNG file as the function of that name for paths does.
 void write_png(AsideFile& file, const Image& image, const PictureLook& look = {});
@@ -20,8 +20,10 @@ void write_plain_image(AsideFile& file, const Image& image, const PictureLook& l
 /// Writes an image in the format of the file's extension: all channels to an EXR file, else the
 /// colour.
 /// @param look of formats of 8 bits
+/// @param format of an EXR file
 /// @throws Error that names the file
-void write_image(AsideFile& file, const Image& image, const PictureLook& look);
+void write_image(AsideFile& file, const Image& image, const PictureLook& look,
+                 const ExrFormat& format = {});
 
 /// Whether the extension is that of an EXR file, which holds all channels.
 bool is_exr(const std::string& path);

@@ -6,6 +6,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStdIO.h>
@@ -14,12 +15,14 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <exception>
 #include <fstream>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
+#include <string_view>
 #include <variant>
 
 #include "freepath/base/thread_limit.h"
@@ -45,6 +48,8 @@ void set_metadata(Imf::Header& header, const Image& image) {
       header.insert(name, Imf::StringAttribute(*text));
     } else if (const auto* real = std::get_if<double>(&value)) {
       header.insert(name, Imf::DoubleAttribute(*real));
+    } else if (const auto* matrix = std::get_if<Matrix4d>(&value)) {
+      header.insert(name, Imf::M44fAttribute(Imath::M44f(*matrix)));
     } else {
       const int64_t integer = std::get<int64_t>(value);
       if (integer >= std::numeric_limits<int>::min() &&
@@ -72,21 +77,68 @@ Imath::Box2i window(int x, int y, int width, int height) {
   return {Imath::V2i(x, y), Imath::V2i(x + width - 1, y + height - 1)};
 }
 
-template <class T>
-void write(const std::string& name, const Image& image, const T* values, Imf::PixelType type) {
+Imf::Compression compression_of(ExrCompression compression) {
+  switch (compression) {
+    case ExrCompression::kNone:
+      return Imf::NO_COMPRESSION;
+    case ExrCompression::kZip:
+      return Imf::ZIP_COMPRESSION;
+    case ExrCompression::kZips:
+      return Imf::ZIPS_COMPRESSION;
+    case ExrCompression::kPiz:
+      return Imf::PIZ_COMPRESSION;
+    case ExrCompression::kDwaa:
+      return Imf::DWAA_COMPRESSION;
+    case ExrCompression::kDwab:
+      return Imf::DWAB_COMPRESSION;
+  }
+  return Imf::ZIP_COMPRESSION;
+}
+
+/// Whether the values of a channel have a place in 16 bits: not those that measure or count.
+bool fits_half(const std::string& channel) {
+  constexpr std::array<std::string_view, 5> kExact = {"depth.", "position.", "variance.", "lookups",
+                                                      "samples"};
+  return std::none_of(kExact.begin(), kExact.end(),
+                      [&](std::string_view name) { return channel.starts_with(name); });
+}
+
+/// A channel in 16 bits.
+std::vector<Imath::half> half_channel(const Image& image, std::size_t channel) {
+  constexpr float kLargestHalf = 65504;
+  std::vector<Imath::half> values;
+  values.reserve(image.pixel_count());
+  for (std::size_t i = channel; i < image.values.size(); i += image.channels.size()) {
+    values.emplace_back(std::clamp(image.values[i], -kLargestHalf, kLargestHalf));
+  }
+  return values;
+}
+
+void write(const std::string& name, const Image& image, const ExrFormat& format) {
   const Imath::Box2i pixels = window(image.x, image.y, image.width, image.height);
   const Imath::Box2i whole = image.full_width > 0 && image.full_height > 0
                                  ? window(0, 0, image.full_width, image.full_height)
                                  : pixels;
-  Imf::Header header(whole, pixels, 1, Imath::V2f(0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+  Imf::Header header(whole, pixels, 1, Imath::V2f(0), 1, Imf::INCREASING_Y,
+                     compression_of(format.compression));
+  header.dwaCompressionLevel() = format.dwa_level;
   set_metadata(header, image);
   set_chromaticities(header, image);
   Imf::FrameBuffer buffer;
-  const std::size_t stride = image.channels.size() * sizeof(T);
+  std::vector<std::vector<Imath::half>> halves(image.channels.size());
+  const std::size_t stride = image.channels.size() * sizeof(float);
   for (std::size_t c = 0; c < image.channels.size(); ++c) {
-    header.channels().insert(image.channels[c], Imf::Channel(type));
-    buffer.insert(image.channels[c],
-                  Imf::Slice::Make(type, values + c, pixels, stride, stride * image.width));
+    const bool is_half = format.precision == ExrPrecision::kHalf && fits_half(image.channels[c]);
+    header.channels().insert(image.channels[c], Imf::Channel(is_half ? Imf::HALF : Imf::FLOAT));
+    if (is_half) {
+      halves[c] = half_channel(image, c);
+      constexpr std::size_t kSize = sizeof(Imath::half);
+      buffer.insert(image.channels[c], Imf::Slice::Make(Imf::HALF, halves[c].data(), pixels, kSize,
+                                                        kSize * image.width));
+    } else {
+      buffer.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.values.data() + c, pixels,
+                                                        stride, stride * image.width));
+    }
   }
   std::ofstream stream(name, std::ios::binary);
   {
@@ -102,15 +154,9 @@ void write(const std::string& name, const Image& image, const T* values, Imf::Pi
 
 }  // namespace
 
-std::string write_exr_values(const std::string& name, const Image& image, const float* values,
-                             ExrPrecision precision) {
+std::string write_exr_values(const std::string& name, const Image& image, const ExrFormat& format) {
   try {
-    if (precision == ExrPrecision::kHalf) {
-      const std::vector<Imath::half> halves(values, values + image.values.size());
-      write(name, image, halves.data(), Imf::HALF);
-    } else {
-      write(name, image, values, Imf::FLOAT);
-    }
+    write(name, image, format);
   } catch (const std::exception& error) {
     return error.what();
   }

@@ -11,10 +11,8 @@
 namespace freepath {
 
 /// Writes an EXR file. Whole numbers of the metadata that its integers can't hold become texts.
-/// @param values those to store instead of the image's own, as many
 /// @return the reason why it could not; empty: it is written
-std::string write_exr_values(const std::string& name, const Image& image, const float* values,
-                             ExrPrecision precision);
+std::string write_exr_values(const std::string& name, const Image& image, const ExrFormat& format);
 
 /// Encodes sRGB pixels as a PNG file.
 /// @param rgb 3 · width · height values

@@ -70,24 +70,16 @@ void check_writable(const std::string& path) {
   check_file_place(path);
 }
 
-void write_exr(const std::string& path, const Image& image, ExrPrecision precision) {
+void write_exr(const std::string& path, const Image& image, const ExrFormat& format) {
   AsideFile file(path);
-  write_exr(file, image, precision);
+  write_exr(file, image, format);
 }
 
-void write_exr(AsideFile& file, const Image& image, ExrPrecision precision) {
+void write_exr(AsideFile& file, const Image& image, const ExrFormat& format) {
   const std::string& path = file.path();
   check_consistent(path, image);
   if (image_format(path) != ImageFormat::kExr) fail("{}: an EXR file must end in .exr", path);
-  const bool half = precision == ExrPrecision::kHalf;
-  std::vector<float> clamped;
-  if (half) {
-    constexpr float kLargestHalf = 65504;
-    clamped = image.values;
-    for (float& value : clamped) value = std::clamp(value, -kLargestHalf, kLargestHalf);
-  }
-  const std::string reason =
-      write_exr_values(file.name(), image, half ? clamped.data() : image.values.data(), precision);
+  const std::string reason = write_exr_values(file.name(), image, format);
   if (!reason.empty()) file.give_up(reason);
   file.replace_target();
 }
@@ -120,9 +112,10 @@ bool is_exr(const std::string& path) {
   return !is_plain_image(path) && image_format(path) == ImageFormat::kExr;
 }
 
-void write_image(AsideFile& file, const Image& image, const PictureLook& look) {
+void write_image(AsideFile& file, const Image& image, const PictureLook& look,
+                 const ExrFormat& format) {
   if (is_plain_image(file.path())) return write_plain_image(file, image, look);
-  if (is_exr(file.path())) return write_exr(file, image);
+  if (is_exr(file.path())) return write_exr(file, image, format);
   write_png(file, image, look);
 }
 

@@ -386,6 +386,7 @@ void PathWavefront::escape(ScenePath& path) {
     jobs_.layers.background(path.result,
                             rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
   }
+  if (setup_.transparent && path.scatterings == 0) return;
   (in_rgb ? path.rgb : path.radiance) += seen;
 }
 

@@ -34,6 +34,7 @@ struct PathSetup {
   uint64_t seed = 0;
   Absorption absorption = Absorption::kWeighted;
   uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
+  bool transparent = false;               ///< RenderSettings::transparent
   /// Russian roulette is played where no channel's throughput reaches this.
   float roulette_threshold = 0.25F;
   /// Whether scatterings in emissive media also look for their light along lines of its own; where

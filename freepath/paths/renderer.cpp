@@ -107,6 +107,7 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   setup.seed = settings.walk.seed;
   setup.absorption = settings.walk.absorption;
   setup.max_scatterings = settings.max_scatterings;
+  setup.transparent = settings.transparent;
   // Paths of different channels are walked apart.
   setup.slots = std::max<std::size_t>(settings.batch, 1) * factory.paths_per_sample();
   const std::size_t pixels = static_cast<std::size_t>(window.width) * window.height;

@@ -46,6 +46,9 @@ struct RenderSettings {
   bool chooses_transmittance = false;
   /// Casts shadow rays that bring little by Russian roulette (ShadowGuide); else all are cast.
   bool shadow_roulette = true;
+  /// Leaves out light from outside that is seen without a scattering: pictures of what is in the
+  /// scene alone, premultiplied by alpha.
+  bool transparent = false;
   /// What the film records; path layers cost time, and all cost memory.
   LayerSet layers = LayerSet::standard();
   /// Channels of spectral radiance, in the light's own units (docs/scenes.md); recorded only where

@@ -248,7 +248,10 @@ Camera::Rays Camera::make_rays(const CameraModel& model, const Matrix4d& matrix,
 }
 
 Camera::Camera(const CameraModel& model, const Matrix4d& world_from_camera, int width, int height)
-    : width_(width), height_(height), rays_(make_rays(model, world_from_camera, width, height)) {}
+    : width_(width),
+      height_(height),
+      world_from_camera_(world_from_camera),
+      rays_(make_rays(model, world_from_camera, width, height)) {}
 
 Camera::Camera(const View& view, int width, int height)
     : Camera(pinhole(view, width, height), world_from_camera(view), width, height) {}
@@ -264,6 +267,23 @@ bool Camera::is_mirrored() const {
   }
   const auto& camera = std::get<Spherical>(rays_);
   return camera.right.cross(camera.up).dot(camera.ahead) > 0;
+}
+
+std::optional<Matrix4d> Camera::ndc_from_world() const {
+  const auto* const camera = std::get_if<Projective>(&rays_);
+  if (camera == nullptr) return std::nullopt;
+  // A point is origin + depth · (x right + y up + middle), or origin + x right + y up + middle +
+  // depth · ahead where rays are parallel.
+  const Vec3d right = camera->step_x * (0.5 * width_);
+  const Vec3d up = camera->step_y * (-0.5 * height_);
+  const Vec3d middle = camera->corner + right - up;
+  const Vec3d ahead(camera->ahead);
+  if (camera->is_parallel) {
+    return camera_matrix(right, up, ahead, camera->origin + middle).inverse();
+  }
+  const Matrix4d planes = camera_matrix(right, up, middle + ahead, camera->origin).inverse();
+  const Matrix4d divide(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0);
+  return planes * divide;
 }
 
 std::optional<double> Camera::vertical_angle() const {

@@ -124,6 +124,14 @@ class Camera {
   /// and not to all sides [degrees].
   std::optional<double> vertical_angle() const;
 
+  /// World space to camera space, for points as rows.
+  Matrix4d camera_from_world() const { return world_from_camera_.inverse(); }
+
+  /// World space to normalised device coordinates, for points as rows of homogeneous coordinates:
+  /// x from -1 at the left of the film to 1, y from -1 at its bottom to 1, z the reciprocal of the
+  /// depth (of parallel rays, the depth). Nothing for a camera that looks to all sides.
+  std::optional<Matrix4d> ndc_from_world() const;
+
   /// Whether rays depend on the point of the lens.
   bool has_lens() const;
 
@@ -167,6 +175,7 @@ class Camera {
   static Rays make_rays(const CameraModel& model, const Matrix4d& matrix, int width, int height);
 
   int width_, height_;
+  Matrix4d world_from_camera_;
   Rays rays_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "apps/freepath/console.h"
 #include "freepath/io/image.h"
 #include "tests/apps/program.h"
 #include "tests/apps/scene_files.h"
@@ -35,10 +36,11 @@ class FinishedRenderTest : public ProgramTest {
 TEST_F(FinishedRenderTest, SignalsOfAnEndSaveWhatThereIs) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
     const Outcome outcome = render_until("-o a.exr", [&](int process) { kill(process, signal); });
-    EXPECT_EQ(outcome.status, 0) << signal << outcome;
+    EXPECT_EQ(outcome.status, program::kPartialStatus) << signal << outcome;
     EXPECT_NE(outcome.messages.find("interrupted after"), std::string::npos) << outcome;
-    EXPECT_EQ(read_image(path("a.exr")).width, 32);
-    fs::remove(path("a.exr"));
+    EXPECT_FALSE(fs::exists(path("a.exr")));
+    EXPECT_EQ(read_image(path("a.partial.exr")).width, 32);
+    fs::remove(path("a.partial.exr"));
   }
   EXPECT_EQ(files(), std::vector<std::string>({"ball.vdb"}));
 }
@@ -47,27 +49,27 @@ TEST_F(FinishedRenderTest, FilesThatFailKeepNoneOfTheOthersAndThePictureIsKept) 
   fs::create_directory(path("temporary"));
   setenv("TMPDIR", path("temporary").c_str(), 1);
   const auto block = [&](int process) {
-    fs::create_directories(path("a.exr") / fs::path("inner"));
+    fs::create_directories(path("a.partial.exr") / fs::path("inner"));
     kill(process, SIGINT);
   };
   const Outcome outcome = render_until("-o a.exr -o b.png --stats s.json", block);
   EXPECT_EQ(outcome.status, 1) << outcome;
-  EXPECT_NE(outcome.messages.find("a.exr: can't write it"), std::string::npos) << outcome;
+  EXPECT_NE(outcome.messages.find("a.partial.exr: is a directory"), std::string::npos) << outcome;
   EXPECT_NE(outcome.messages.find("the picture is kept in " + path("temporary")), std::string::npos)
       << outcome;
-  EXPECT_TRUE(fs::exists(path("b.png")));
-  EXPECT_TRUE(fs::exists(path("s.json")));
+  EXPECT_TRUE(fs::exists(path("b.partial.png")));
+  EXPECT_TRUE(fs::exists(path("s.partial.json")));
   for (const auto& kept : fs::directory_iterator(path("temporary"))) {
     EXPECT_EQ(read_image(kept.path()).width, 32);
     fs::remove(kept.path());
   }
-  fs::remove_all(path("a.exr"));
+  fs::remove_all(path("a.partial.exr"));
 
   // One file with all layers is enough.
   const Outcome two = render_until("-o a.exr -o c.exr", block);
   unsetenv("TMPDIR");
   EXPECT_EQ(two.status, 1) << two;
-  EXPECT_EQ(read_image(path("c.exr")).width, 32);
+  EXPECT_EQ(read_image(path("c.partial.exr")).width, 32);
   EXPECT_TRUE(fs::is_empty(path("temporary")));
 }
 

@@ -212,8 +212,10 @@ TEST_F(LayersTest, DenoisesTheColourWithAlbedoAndNormal) {
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const std::string name = colours[c];
-      const float expected = 2 * value(image, "noisy." + name, i) +
-                             value(image, "albedo." + name, i) +
+      // The background is kept from it.
+      const float background = value(image, "background." + name, i);
+      const float inside = std::max(0.0F, value(image, "noisy." + name, i) - background);
+      const float expected = background + 2 * inside + value(image, "albedo." + name, i) +
                              value(image, std::string("normal.") + axes[c], i);
       EXPECT_NEAR(value(image, name, i), expected, 1e-5F * (1 + expected));
     }
@@ -222,6 +224,82 @@ TEST_F(LayersTest, DenoisesTheColourWithAlbedoAndNormal) {
   const Image without = read_image(path("plain.exr"));
   EXPECT_EQ(without.channels.size(), 7U);
   EXPECT_EQ(value(without, "R", 40), value(image, "R", 40));
+}
+
+TEST_F(LayersTest, DenoisesAlphaOfWhatIsTransparent) {
+  setenv("LD_LIBRARY_PATH", FREEPATH_FAKE_DENOISER, 1);
+  const Outcome outcome =
+      start("render ball.vdb --size 12x8 --spp 4 --layers all --denoise --transparent -o a.exr");
+  unsetenv("LD_LIBRARY_PATH");
+  ASSERT_EQ(outcome.status, 0) << outcome;
+  const Image image = read_image(path("a.exr"));
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    const float red = 2 * std::max(0.0F, value(image, "noisy.R", i)) + value(image, "albedo.R", i) +
+                      value(image, "normal.X", i);
+    EXPECT_NEAR(value(image, "R", i), red, 1e-5F * (1 + red));
+    const float alpha = 2 * value(image, "noisy.A", i) + value(image, "albedo.R", i) +
+                        value(image, "normal.X", i);
+    EXPECT_NEAR(value(image, "A", i), std::clamp(alpha, 0.0F, 1.0F), 1e-5F);
+  }
+}
+
+// Over a plate of the environment's light it is the picture with the environment behind it.
+TEST_F(LayersTest, TransparentPicturesAreThoseWithoutABackground) {
+  write_scene("fog.pbrt", "rgb");
+  for (const std::string render :
+       {"render ball.vdb --size 12x8 --spp 4 --environment 1 --sun none --albedo 0.7",
+        "render fog.pbrt --spp 4 --environment 1 --color spectral"}) {
+    ASSERT_EQ(run(render + " --layers all -o whole.exr").status, 0);
+    ASSERT_EQ(run(render + " --layers all --transparent -o over.exr").status, 0);
+    const Image whole = read_image(path("whole.exr"));
+    const Image over = read_image(path("over.exr"));
+    double seen = 0;
+    for (std::size_t i = 0; i < over.pixel_count(); ++i) {
+      for (const std::string c : {"R", "G", "B"}) {
+        const float background = value(whole, "background." + c, i);
+        EXPECT_NEAR(value(over, c, i) + background, value(whole, c, i), 1e-5F);
+        EXPECT_EQ(value(over, "A", i), value(whole, "A", i));
+        // The layer is there for those who want the light back.
+        EXPECT_EQ(value(over, "background." + c, i), background);
+        seen += background;
+      }
+      if (render.find("ball") != std::string::npos) {
+        EXPECT_NEAR(value(over, "G", i) + (1 - value(over, "A", i)), value(whole, "G", i), 1e-5F);
+      }
+    }
+    EXPECT_GT(seen, 1);
+  }
+}
+
+TEST_F(LayersTest, WritesTheFormsOfExrThatAreAskedFor) {
+  const std::string render = "render ball.vdb --size 32x24 --spp 4 --layers all -o ";
+  ASSERT_EQ(run(render + "a.exr").status, 0);
+  const Image exact = read_image(path("a.exr"));
+  for (const std::string form : {"half", "float,piz", "zips,half", "half,dwaa:20", "dwab", "none"}) {
+    ASSERT_EQ(run(render + "b.exr --exr " + form).status, 0) << form;
+    const Image image = read_image(path("b.exr"));
+    ASSERT_EQ(image.channels, exact.channels) << form;
+    const bool is_exact = form == "float,piz" || form == "none";
+    EXPECT_EQ(image.values == exact.values, is_exact) << form;
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+      const std::string& channel = image.channels[i % image.channels.size()];
+      const bool is_kept = channel == "depth.Z" || channel.starts_with("position.") ||
+                           channel.starts_with("variance.") || channel == "samples";
+      // Lossy compression is for 16 and 32 bits alike, but for channels that aren't colours.
+      const float tolerance = form.find("dwa") == std::string::npos ? 0.001F : 0.1F;
+      if (is_kept && tolerance < 0.01F) {
+        EXPECT_EQ(image.values[i], exact.values[i]) << form << channel;
+      }
+      EXPECT_NEAR(image.values[i], exact.values[i],
+                  tolerance * (0.1F + std::abs(exact.values[i])))
+          << form << channel;
+    }
+  }
+  for (const std::string wrong : {"quarter", "half:3", "dwaa:x", "half,", "dwaa:-1"}) {
+    const Outcome outcome = run(render + "c.exr --exr " + wrong);
+    EXPECT_EQ(outcome.status, 1) << wrong << outcome;
+    EXPECT_NE(outcome.messages.find("--exr"), std::string::npos) << wrong << outcome;
+  }
 }
 
 TEST_F(LayersTest, SaysHowToGetADenoiserBeforeRendering) {

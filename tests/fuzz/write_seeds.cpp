@@ -146,7 +146,7 @@ void write_image_seeds(const fs::path& folder) {
   for (int i = 0; i < 80; ++i) image.values.push_back(0.1F * static_cast<float>(i % 13));
   image.metadata = {{"note", std::string("seed")}, {"number", int64_t{7}}};
   write_exr(folder / "float.exr", image);
-  write_exr(folder / "half.exr", image, ExrPrecision::kHalf);
+  write_exr(folder / "half.exr", image, {.precision = ExrPrecision::kHalf});
   write_png(folder / "picture.png", image);
   write_plain_image(folder / "picture.pfm", image);
   write_plain_image(folder / "picture.qoi", image);

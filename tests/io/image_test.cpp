@@ -112,7 +112,7 @@ TEST_F(ImageTest, ExrKeepsMetadata) {
 TEST_F(ImageTest, HalfPrecisionStaysFinite) {
   Image image = numbered_image({"R", "G", "B"});
   image.values[0] = 1e6F;
-  write_exr(path("a.exr"), image, ExrPrecision::kHalf);
+  write_exr(path("a.exr"), image, {.precision = ExrPrecision::kHalf});
   const Image read = read_image(path("a.exr"));
   EXPECT_EQ(read.values[0], 65504.0F);
   EXPECT_NEAR(read.values[1], 1.1F, 1.1F / 2048);

@@ -127,5 +127,34 @@ TEST(SkyDirection, IsACompass) {
   expect_near(sky_direction(90, 0, UpAxis::kZ), {0, 0, 1});
 }
 
+// A point on a ray is where the ray is on the film, in coordinates from -1 to 1.
+TEST(Camera, CoordinatesOfPointsOnRaysAreThoseOfTheFilm) {
+  const View view{{3, 2, 7}, {0.5, 1, -1}, {0.1, 1, 0}, 35};
+  const Matrix4d place = world_from_camera(view);
+  for (const CameraModel& model :
+       {CameraModel(pinhole(view, 64, 40)), CameraModel(PerspectiveCamera{.fov = 50}),
+        CameraModel(PerspectiveCamera{.fov = 50, .screen_window = ScreenWindow{-1, 0.5, -0.2, 2}}),
+        CameraModel(OrthographicCamera{.screen_window = ScreenWindow{-1, 0.5, -0.2, 2}})}) {
+    const Camera camera(model, place, 64, 40);
+    const Matrix4d ndc = camera.ndc_from_world().value();
+    for (const auto& [x, y] : {std::pair(0.0F, 0.0F), std::pair(64.0F, 40.0F), std::pair(20.0F, 5.0F)}) {
+      const CameraRay ray = camera.ray(x, y);
+      for (const double t : {2.0, 9.0}) {
+        const Vec3d point = ray.origin + Vec3d(ray.direction) * t;
+        Vec3d projected;
+        ndc.multVecMatrix(point, projected);
+        EXPECT_NEAR(projected.x, x / 32 - 1, 1e-5);
+        EXPECT_NEAR(projected.y, 1 - y / 20, 1e-5);
+        Vec3d seen;
+        camera.camera_from_world().multVecMatrix(point, seen);
+        EXPECT_GT(seen.z, 0);
+        const bool is_parallel = std::holds_alternative<OrthographicCamera>(model);
+        EXPECT_NEAR(projected.z, is_parallel ? seen.z : 1 / seen.z, 1e-5);
+      }
+    }
+  }
+  EXPECT_FALSE(Camera(SphericalCamera{}, place, 8, 4).ndc_from_world());
+}
+
 }  // namespace
 }  // namespace freepath

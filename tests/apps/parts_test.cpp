@@ -1,0 +1,387 @@
+// Parts of pictures: ranges of samples and tiles, merged; checkpoints and what is gone on with.
+
+#include <algorithm>
+#include <cmath>
+#include <bit>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "apps/freepath/console.h"
+#include "freepath/base/random.h"
+#include "freepath/io/image.h"
+#include "tests/apps/program.h"
+#include "tests/apps/scene_files.h"
+
+namespace freepath::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PartsTest : public ProgramTest {
+ protected:
+  PartsTest() { write_cube(path("ball.vdb")); }
+
+  void write_scene() const {
+    write_text(path("room.pbrt"), R"(
+      Film "spectral" "integer xresolution" 24 "integer yresolution" 18 "integer nbuckets" 5
+        "string filename" "room.exr"
+      Sampler "zsobol" "integer pixelsamples" 17 "integer seed" 3
+      LookAt 0 1 6  0 0 0  0 1 0
+      Camera "perspective" "float fov" 35
+      WorldBegin
+      LightSource "distant" "point3 from" [ 2 3 4 ] "rgb L" [ 3 2 1 ]
+      LightSource "infinite" "rgb L" [ 0.2 0.4 0.8 ]
+      MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 0.9 0.5 0.2 ]
+        "rgb sigma_a" [ 0.1 0.1 0.3 ] "float g" 0.5
+      AttributeBegin
+        MediumInterface "fog" ""
+        Material "interface"
+        Shape "sphere" "float radius" 1.2
+      AttributeEnd
+      Translate 0 -1.5 0
+      Material "diffuse" "rgb reflectance" [ 0.7 0.4 0.3 ]
+      Shape "sphere" "float radius" 0.8
+    )");
+  }
+
+  /// Runs a line that has to go well.
+  void expect_done(const std::string& line) const {
+    const Outcome outcome = run(line);
+    ASSERT_EQ(outcome.status, 0) << line << '\n' << outcome;
+  }
+
+  /// Checks that a line is refused, with these words.
+  void expect_refused(const std::string& line, const std::string& text) const {
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.status, 1) << line << '\n' << outcome;
+    EXPECT_NE(outcome.messages.find(text), std::string::npos) << line << '\n' << outcome;
+  }
+
+  void expect_same_pixels(const std::string& a, const std::string& b) const {
+    const Image first = read_image(path(a));
+    const Image second = read_image(path(b));
+    ASSERT_EQ(first.channels, second.channels);
+    ASSERT_EQ(first.values.size(), second.values.size());
+    for (std::size_t i = 0; i < first.values.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<uint32_t>(first.values[i]), std::bit_cast<uint32_t>(second.values[i]))
+          << a << " and " << b << ": " << first.channels[i % first.channels.size()];
+    }
+  }
+};
+
+/// How often to try what is random: a few times, or as often as FREEPATH_TRIALS says.
+int trials(int usual) {
+  const char* const text = std::getenv("FREEPATH_TRIALS");
+  return text == nullptr ? usual : std::atoi(text);
+}
+
+/// Cuts a picture at random: tiles, and ranges of samples of each.
+class RandomParts {
+ public:
+  RandomParts(uint32_t trial, uint32_t samples) : random_(17, trial, 0, 0), samples_(samples) {}
+
+  /// Options of the parts, in any order.
+  std::vector<std::string> options() {
+    std::vector<std::string> parts;
+    const uint32_t tiles = 1 + below(below(2) == 0 ? 2 : 9);
+    for (uint32_t tile = 1; tile <= tiles; ++tile) {
+      const uint32_t most = 1 + below(samples_);
+      for (uint32_t first = 0; first < samples_;) {
+        const uint32_t last = std::min(samples_, first + 1 + below(most)) - 1;
+        parts.push_back("--tiles " + std::to_string(tile) + "/" + std::to_string(tiles) +
+                        " --samples " + std::to_string(first) + "-" + std::to_string(last) + how());
+        first = last + 1;
+      }
+    }
+    parts.resize(std::min<std::size_t>(parts.size(), 64));
+    for (std::size_t i = parts.size(); i > 1; --i) std::swap(parts[i - 1], parts[below(i)]);
+    return parts;
+  }
+
+ private:
+  uint32_t below(std::size_t end) {
+    return std::min(static_cast<uint32_t>(random_.uniform() * end), static_cast<uint32_t>(end - 1));
+  }
+  /// On what a part runs.
+  std::string how() {
+    const char* const simd[] = {" --simd sse4", " --simd avx2", " --simd best"};
+    const char* const threads[] = {" --threads 1", " --threads 2"};
+    return simd[below(3)] + std::string(threads[below(2)]) + " --batch " +
+           std::to_string(1 + below(300));
+  }
+
+  RandomStream random_;
+  uint32_t samples_;
+};
+
+TEST_F(PartsTest, AnyPartsMergeToTheBitsOfOneProcess) {
+  write_scene();
+  struct Subject {
+    std::string render;
+    uint32_t samples;
+  };
+  const std::vector<Subject> subjects = {
+      {"render ball.vdb --size 24x18 --sun 30,60 --albedo 0.9 --g 0.6 --layers all", 13},
+      {"render room.pbrt --color rgb --layers all", 17},
+      {"render room.pbrt --color spectral --layers default,halves", 17}};
+  for (const Subject& subject : subjects) {
+    expect_done(subject.render + " --spp " + std::to_string(subject.samples) +
+                " -o whole.exr -o whole.film");
+    for (int trial = 0; trial < trials(4); ++trial) {
+      const std::vector<std::string> parts =
+          RandomParts(static_cast<uint32_t>(trial), subject.samples).options();
+      std::string merge = "merge";
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string name = "part" + std::to_string(i) + ".film";
+        expect_done(subject.render + " " + parts[i] + " -o " + name);
+        merge += " " + name;
+      }
+      if (parts.size() == 64) merge += " --partial";  // some were left out
+      expect_done(merge + " -o merged.exr -o merged.film");
+      if (parts.size() == 64) continue;
+      expect_same_pixels("merged.exr", "whole.exr");
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST_F(PartsTest, ACropIsAPartOfThePicture) {
+  const std::string render = "render ball.vdb --size 24x18 ";
+  expect_done(render + "--spp 4 -o whole.exr");
+  expect_done(render + "--spp 4 --crop 0,0,10,18 -o left.film");
+  expect_done(render + "--spp 4 --crop 10,0,24,18 -o right.film");
+  expect_done("merge right.film left.film -o merged.exr");
+  expect_same_pixels("merged.exr", "whole.exr");
+}
+
+TEST_F(PartsTest, PartsThatDoNotFitAreNamed) {
+  const std::string render = "render ball.vdb --size 24x18 ";
+  expect_done(render + "--samples 0-3 -o a.film");
+  expect_done(render + "--samples 4-7 -o b.film");
+  expect_done(render + "--samples 2-5 -o overlapping.film");
+  expect_done(render + "--samples 6-7 -o late.film");
+  expect_done(render + "--samples 4-7 --seed 2 -o seed.film");
+  expect_done(render + "--samples 4-7 --g 0.5 -o g.film");
+  expect_done(render + "--samples 4-7 --tracker weighted-delta -o tracker.film");
+  expect_done(render + "--samples 4-7 --layers all -o layers.film");
+  expect_done(render + "--samples 4-7 --tiles 1/2 -o tile.film");
+  expect_done("render ball.vdb --size 24x19 --samples 4-7 -o size.film");
+  write_cube(path("ball.vdb"), [](const Vec3i& voxel) { return 2 * ball(voxel); });
+  expect_done(render + "--samples 4-7 -o content.film");
+  expect_refused("merge a.film overlapping.film -o m.exr",
+                 "a.film and overlapping.film overlap: both have samples 2 to 3 of pixel (0, 0)");
+  expect_refused("merge a.film late.film -o m.exr", "no part has samples 4 to 5 of pixel (0, 0)");
+  expect_refused("merge b.film -o m.exr", "no part has samples 0 to 3");
+  expect_refused("merge a.film tile.film -o m.exr", "samples 4 to 7 of pixel (0, 9)");
+  expect_refused("merge a.film seed.film -o m.exr", "seed.film: is no part of the same picture as "
+                                                    "a.film: its seed is 2 and not 0");
+  expect_refused("merge a.film g.film -o m.exr", "--g is 0.5 and not not given");
+  expect_refused("merge a.film tracker.film -o m.exr", "tracker is weighted-delta and not delta");
+  expect_refused("merge a.film layers.film -o m.exr", "its layers are others");
+  expect_refused("merge a.film size.film -o m.exr", "its width and height are others");
+  expect_refused("merge a.film content.film -o m.exr", "the content of ball.vdb is");
+  expect_refused("merge a.film ball.vdb -o m.exr", "ball.vdb: it is no film");
+  expect_refused("merge a.film none.film -o m.exr", "none.film: no such file");
+  EXPECT_FALSE(fs::exists(path("m.exr")));
+  expect_done("merge a.film late.film -o m.exr --partial");
+}
+
+TEST_F(PartsTest, OptionsThatContradictEachOtherAreRefused) {
+  const std::string render = "render ball.vdb --size 8x6 -o a.film ";
+  expect_refused(render + "--samples 0-3 --spp 4", "--samples and --spp");
+  expect_refused(render + "--samples 3-1", "--samples: '3-1'");
+  expect_refused(render + "--samples 3", "--samples: '3'");
+  expect_refused(render + "--tiles 0/2", "--tiles: '0/2'");
+  expect_refused(render + "--tiles 3/2", "--tiles: '3/2'");
+  expect_refused(render + "--tiles 1/7", "7 tiles of 6 rows");
+  expect_refused(render + "--noise 0.1 --tiles 1/2", "--noise and --tiles");
+  expect_refused(render + "--checkpoint a.exr", "has not the extension of a film");
+  expect_refused(render + "--every 3", "--checkpoint FILE.film");
+  expect_refused(render + "--resume none.film", "none.film: no such file");
+  expect_refused(render + "--checkpoint none/a.film", "the folder none does not exist");
+}
+
+// The mean of all samples, and its variance, as if they were of one picture.
+TEST_F(PartsTest, AveragesOfSeedsHaveTheirWeightsAndVariances) {
+  const std::string render = "render ball.vdb --size 12x9 --sun 30,60 ";
+  expect_done(render + "--spp 64 --seed 1 -o a.exr -o a.film");
+  expect_done(render + "--spp 192 --seed 2 -o b.exr -o b.film");
+  expect_refused("merge a.film b.film -o m.exr", "its seed is 2 and not 1");
+  expect_done("merge a.film b.film --average -o m.exr");
+  const Image a = read_image(path("a.exr"));
+  const Image b = read_image(path("b.exr"));
+  const Image m = read_image(path("m.exr"));
+  const auto value = [](const Image& image, int i, const char* channel) {
+    return double{image.pixel(i % 12, i / 12)[*find_channel(image, channel)]};
+  };
+  for (int i = 0; i < 12 * 9; ++i) {
+    EXPECT_EQ(value(m, i, "samples"), 256);
+    EXPECT_NEAR(value(m, i, "G"), 0.25 * value(a, i, "G") + 0.75 * value(b, i, "G"), 1e-6);
+    // Sums of squares about each mean, and between the means.
+    const double within = value(a, i, "variance.G") * 64 * 63 + value(b, i, "variance.G") * 192 * 191;
+    const double apart = value(a, i, "G") - value(b, i, "G");
+    const double expected = (within + 64 * 0.75 * apart * apart) / 255 / 256;
+    EXPECT_NEAR(value(m, i, "variance.G"), expected, 1e-4 * expected + 1e-12);
+  }
+}
+
+TEST_F(PartsTest, GoesOnFromAFilm) {
+  const std::string render = "render ball.vdb --size 24x18 ";
+  expect_done(render + "--spp 11 -o whole.exr");
+  expect_done(render + "--spp 3 -o some.exr --checkpoint a.film");
+  const Outcome more = run(render + "--spp 11 --threads 1 --resume a.film -o more.exr");
+  EXPECT_EQ(more.status, 0) << more;
+  EXPECT_NE(more.messages.find("goes on from 3 samples per pixel"), std::string::npos) << more;
+  expect_same_pixels("more.exr", "whole.exr");
+  expect_done(render + "--spp 3 --resume a.film -o same.exr");
+  expect_same_pixels("same.exr", "some.exr");
+  expect_refused(render + "--spp 2 --resume a.film -o b.exr",
+                 "has 3 samples of a pixel already, and 2 are asked for");
+  expect_refused(render + "--spp 9 --g 0.1 --resume a.film -o b.exr", "--g is not given");
+  expect_refused(render + "--spp 9 --crop 0,0,2,2 --resume a.film -o b.exr", "24x18 pixels");
+  expect_refused(render + "--spp 9 --layers all --resume a.film -o b.exr", "its layers are");
+  // The first run of a job that may be repeated.
+  expect_done(render + "--spp 11 --checkpoint c.film --resume c.film -o first.exr");
+  expect_same_pixels("first.exr", "whole.exr");
+}
+
+TEST_F(PartsTest, ADamagedFilmIsAnErrorWhereverItIsDamaged) {
+  expect_done("render ball.vdb --size 5x4 --spp 2 --layers all -o a.film");
+  std::string bytes;
+  {
+    std::ifstream stream(path("a.film"), std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(stream), {});
+  }
+  const auto check = [&](const std::string& damaged, const std::string& how) {
+    write_text(path("b.film"), damaged);
+    const Outcome outcome = run("merge b.film -o m.exr");
+    EXPECT_EQ(outcome.status, 1) << how << outcome;
+    EXPECT_NE(outcome.messages.find("b.film: "), std::string::npos) << how << outcome;
+  };
+  for (std::size_t size = 0; size < bytes.size(); size += size < 64 ? 1 : 37) {
+    check(bytes.substr(0, size), "cut at " + std::to_string(size));
+  }
+  for (std::size_t at = 0; at < bytes.size(); at += at < 64 ? 1 : 29) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x41);
+    check(damaged, "changed at " + std::to_string(at));
+  }
+  check(bytes + "x", "longer");
+  EXPECT_FALSE(fs::exists(path("m.exr")));
+}
+
+// Killed at any moment, and gone on with: the same bits, and no torn file.
+TEST_F(PartsTest, KilledRendersGoOn) {
+  const std::string render = "freepath render ball.vdb --size 48x36 --spp 600 --albedo 1 ";
+  ASSERT_EQ(shell(render + "-o whole.exr").status, 0);
+  RandomStream random(23, 0, 0, 0);
+  int kills = 0;
+  const int wanted = trials(10);
+  for (int run = 0; run < 20 * wanted && kills < wanted; ++run) {
+    const std::string seconds = std::to_string(0.02 + 0.3 * random.uniform());
+    const Outcome outcome = shell("timeout -s KILL " + seconds + " " + render +
+                                  "-o a.exr --checkpoint a.film --resume a.film --every 0.02");
+    if (outcome.status == 0) {
+      expect_same_pixels("a.exr", "whole.exr");
+      if (HasFatalFailure()) return;
+      fs::remove(path("a.film"));
+      fs::remove(path("a.exr"));
+      continue;
+    }
+    ++kills;
+    if (fs::exists(path("a.film"))) {
+      const Outcome merged = this->run("merge a.film --partial -o m.exr");
+      ASSERT_EQ(merged.status, 0) << merged;
+    }
+    ASSERT_FALSE(fs::exists(path("a.exr")));
+  }
+  ASSERT_EQ(kills, wanted);
+  const Outcome last = shell(render + "-o a.exr --checkpoint a.film --resume a.film");
+  EXPECT_EQ(last.status, 0) << last;
+  expect_same_pixels("a.exr", "whole.exr");
+}
+
+TEST_F(PartsTest, ACheckpointThatCannotBeWrittenIsAWarning) {
+  fs::create_directory(path("folder"));
+  bool is_ended = false;
+  const Outcome outcome = start_in_terminal(
+      words("render ball.vdb --size 32x32 --spp 1000000000 -o a.exr --checkpoint folder/a.film "
+            "--every 0.05"),
+      folder_, [&](const std::string& text, int process) {
+        if (samples_shown(text) < 2) return;
+        if (fs::exists(path("folder/a.film"))) fs::remove_all(path("folder"));
+        if (is_ended || text.find("no checkpoint: ") == std::string::npos) return;
+        is_ended = true;
+        kill(process, SIGINT);
+      });
+  EXPECT_EQ(outcome.status, program::kPartialStatus) << outcome;
+  EXPECT_NE(outcome.messages.find("rendering goes on"), std::string::npos) << outcome;
+  EXPECT_TRUE(fs::exists(path("a.partial.exr")));
+}
+
+TEST_F(PartsTest, TheNoiseAskedForIsThatOfThePicture) {
+  const std::string render = "render ball.vdb --size 24x18 --environment 1 --albedo 0.5 ";
+  const Outcome outcome = run(render + "--noise 0.02 -o a.exr --stats a.json");
+  ASSERT_EQ(outcome.status, 0) << outcome;
+  const Image image = read_image(path("a.exr"));
+  double sum = 0;
+  double variance = 0;
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const float* const pixel = image.pixel(column, row);
+      for (const char* channel : {"R", "G", "B"}) {
+        sum += pixel[*find_channel(image, channel)];
+        variance += pixel[*find_channel(image, std::string("variance.") + channel)];
+      }
+    }
+  }
+  const double values = 3.0 * static_cast<double>(image.pixel_count());
+  EXPECT_NEAR(std::sqrt(variance / values) / (sum / values), 0.02, 0.001);
+  // It is the picture of as many samples, whatever the pilot was.
+  const float samples = image.values[*find_channel(image, "samples")];
+  expect_done(render + "--spp " + std::to_string(static_cast<int>(samples)) + " -o b.exr");
+  expect_same_pixels("a.exr", "b.exr");
+  // --spp limits it.
+  const Outcome limited = run(render + "--noise 0.001 --spp 8 -o c.exr");
+  EXPECT_EQ(limited.status, 0) << limited;
+  EXPECT_NE(limited.messages.find("the most that --spp allows"), std::string::npos) << limited;
+}
+
+TEST_F(PartsTest, ProgressIsLinesOfJsonWhereTheyAreAskedFor) {
+  const Outcome outcome = run("render ball.vdb --size 64x64 --spp 3000 -o a.exr --progress json");
+  ASSERT_EQ(outcome.status, 0) << outcome;
+  EXPECT_EQ(outcome.messages.find("{\"progress\":0."), 0U) << outcome;
+  const Outcome none = run("render ball.vdb --size 64x64 --spp 300 -o a.exr --progress none");
+  EXPECT_EQ(none.messages.find("progress"), std::string::npos) << none;
+}
+
+TEST_F(PartsTest, FramesHaveSeedsOfTheirOwnAndFailuresAreReported) {
+  fs::copy(path("ball.vdb"), path("s.1.vdb"));
+  write_text(path("s.2.vdb"), "no volume");
+  fs::copy(path("ball.vdb"), path("s.3.vdb"));
+  const std::string render = "render s.%d.vdb --size 12x9 --spp 2 --frames 1-3 ";
+  const Outcome outcome = run(render + "-o p.%d.exr");
+  EXPECT_EQ(outcome.status, 1) << outcome;
+  EXPECT_NE(outcome.messages.find("1 frame of 3 failed: --frames 2"), std::string::npos) << outcome;
+  ASSERT_TRUE(fs::exists(path("p.3.exr")));
+  EXPECT_NE(read_image(path("p.1.exr")).values, read_image(path("p.3.exr")).values);
+  expect_done("render ball.vdb --size 12x9 --spp 2 --seed 3 -o third.exr");
+  expect_same_pixels("third.exr", "p.3.exr");
+  fs::copy_file(path("ball.vdb"), path("s.2.vdb"), fs::copy_options::overwrite_existing);
+  const auto written = fs::last_write_time(path("p.1.exr"));
+  const Outcome again = run(render + "-o p.%d.exr --skip-existing");
+  EXPECT_EQ(again.status, 0) << again;
+  EXPECT_NE(again.messages.find("frame 1 (1 of 3): is there already"), std::string::npos) << again;
+  EXPECT_EQ(fs::last_write_time(path("p.1.exr")), written);
+  EXPECT_TRUE(fs::exists(path("p.2.exr")));
+  expect_done(render + "-o q.%d.exr --seed-mode same");
+  EXPECT_EQ(read_image(path("q.1.exr")).values, read_image(path("q.3.exr")).values);
+}
+
+}  // namespace
+}  // namespace freepath::testing
