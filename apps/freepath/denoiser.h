@@ -21,8 +21,8 @@ class Denoiser {
   Denoiser& operator=(const Denoiser&) = delete;
 
   /// Denoises R, G, B, and A where it is asked for, and keeps what they were as noisy.{R,G,B,A}.
-  /// Light from outside that is seen without a scattering stays as it is: it is taken out before, and
-  /// added after, so that a sky or a sun behind the scene bleeds into nothing.
+  /// Light from outside that is seen without a scattering stays as it is: it is taken out before,
+  /// and added after, so that a sky or a sun behind the scene bleeds into nothing.
   /// @param guides of the same pixels, with albedo.{R,G,B} and normal.{X,Y,Z}, and with
   ///   background.{R,G,B} where R, G, B contain it
   /// @throws Error with the library's message

@@ -1,9 +1,13 @@
 #include "apps/freepath/estimates.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "apps/freepath/console.h"
+#include "apps/freepath/parse.h"
+#include "freepath/base/error.h"
 #include "freepath/base/counted.h"
 
 namespace freepath::program {
@@ -25,6 +29,22 @@ void put_estimate(nlohmann::ordered_json& json, const std::string& name, const E
   if (!estimate.upper) return;
   json[name + "_error"] = nullptr;  // there is none
   json[name + "_upper"] = *estimate.upper;
+}
+
+uint64_t paths_for_error(double error, double pilot_error, std::string_view option) {
+  constexpr double kMargin = 1.05;  // the pilot knows the variance to a percent or so
+  constexpr double kMost = 1e15;
+  const double paths = kMargin * std::pow(pilot_error / error, 2) * kPilotPaths;
+  if (paths > kMost) fail("{}: {} takes {:.2g} paths: give a larger one", option, error, paths);
+  return std::max<uint64_t>(kPilotPaths, static_cast<uint64_t>(paths));
+}
+
+double parse_error(const std::string& text, std::string_view option) {
+  const std::vector<double> numbers = parse_numbers(text, option);
+  if (numbers.size() != 1 || !(numbers[0] > 0 && numbers[0] < 1)) {
+    fail("{}: '{}' is not one number between 0 and 1, the standard error to reach", option, text);
+  }
+  return numbers[0];
 }
 
 }  // namespace freepath::program

@@ -68,13 +68,13 @@ ExrFormat parse_exr(const std::string& text) {
     const auto* const word = std::find_if(words.begin(), words.end(),
                                           [&](const Word& known) { return known.name == name; });
     if (word == words.end()) {
-      fail("--exr: '{}' is none of float, half, none, zip, zips, piz, dwaa:LEVEL, dwab:LEVEL", name);
+      fail("--exr: '{}' is none of float, half, none, zip, zips, piz, dwaa:LEVEL, dwab:LEVEL",
+           name);
     }
     if (word->precision) format.precision = *word->precision;
     if (word->compression) format.compression = *word->compression;
     if (colon != std::string_view::npos) {
-      const std::vector<double> level =
-          parse_numbers(std::string(item.substr(colon + 1)), "--exr");
+      const std::vector<double> level = parse_numbers(std::string(item.substr(colon + 1)), "--exr");
       const bool is_dwa = word->compression == kDwaa || word->compression == kDwab;
       if (!is_dwa || level.size() != 1 || !(level[0] >= 0 && level[0] <= 1e5)) {
         fail("--exr: '{}' has a level; dwaa and dwab alone have one, of 0 to 100000", item);
@@ -110,9 +110,10 @@ void add_film_options(CLI::App& command, FilmOptions& o) {
       ->group("Picture");
   add_exr_option(command, o.exr);
   command
-      .add_flag("--transparent", o.transparent,
-                "Let light from outside, environment and sun, light the scene but not be seen behind "
-                "it: R, G and B are without a background, premultiplied by A")
+      .add_flag(
+          "--transparent", o.transparent,
+          "Let light from outside, environment and sun, light the scene but not be seen behind "
+          "it: R, G and B are without a background, premultiplied by A")
       ->group("Picture");
   command
       .add_flag("--denoise", o.denoise,

@@ -14,10 +14,12 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "apps/freepath/estimates.h"
 #include "apps/freepath/flux_output.h"
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
 #include "apps/freepath/progress_bar.h"
+#include "apps/freepath/render_output.h"
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
@@ -41,7 +43,7 @@ The domain is that of the active voxels, whatever is in them; of volumes with em
 Between columns densities change sharply (--interpolation nearest) unless another is chosen. The
 result depends on the volumes, --seed and --paths, and on neither --threads nor --batch. With
 --error a first 65536 paths tell how many it takes, and have no part in the result. Ctrl-C ends
-early, with the paths so far.
+early, with the paths so far, a map under a partial name, and exit status 75.
 
 Examples:
   freepath flux cumulus.vdb --albedo 1 --phase droplets:diameter=20 --sun-zenith 30
@@ -128,31 +130,15 @@ FluxSettings read_settings(const FluxOptions& options) {
   return settings;
 }
 
-/// The error to reach, if one is asked for.
-std::optional<double> read_error(const FluxOptions& options) {
-  if (options.error.empty()) return std::nullopt;
-  const std::vector<double> numbers = parse_numbers(options.error, "--error");
-  if (numbers.size() != 1 || !(numbers[0] > 0 && numbers[0] < 1)) {
-    fail("--error: '{}' is not one number between 0 and 1, the standard error to reach",
-         options.error);
-  }
-  return numbers[0];
-}
-
 /// Number of paths that an error takes, by a few that have no part in the result.
 uint64_t paths_for(double error, const FluxScene& scene, FluxSettings settings,
                    const FluxProgress& progress) {
-  constexpr uint64_t kPilotPaths = 65536;
-  constexpr double kMargin = 1.05;  // the pilot knows the variance to a percent or so
-  constexpr double kMost = 1e15;
   settings.paths = kPilotPaths;
-  settings.walk.seed ^= 0x9E3779B97F4A7C15U;
+  settings.walk.seed = pilot_seed(settings.walk.seed);
   const FluxResult pilot = trace_flux(scene.scene, scene.meter, settings, progress);
   const double largest = std::max(
       {pilot.reflectance.all.error, pilot.transmittance.all.error, pilot.absorptance.all.error});
-  const double paths = kMargin * std::pow(largest / error, 2) * kPilotPaths;
-  if (paths > kMost) fail("--error: {} takes {:.2g} paths: give a larger one", error, paths);
-  return std::max<uint64_t>(kPilotPaths, static_cast<uint64_t>(paths));
+  return paths_for_error(error, largest, "--error");
 }
 
 void run(const FluxOptions& options) {
@@ -168,7 +154,8 @@ void run(const FluxOptions& options) {
   const PeriodicSides sides = parse_sides(up == UpAxis::kY ? "x,z" : "x,y", options.domain, up);
   const auto columns = read_columns(options);
   const auto ground = parse_ground(options.ground, up);
-  const std::optional<double> error = read_error(options);
+  std::optional<double> error;
+  if (!options.error.empty()) error = parse_error(options.error, "--error");
   FluxSettings settings = read_settings(options);
   if (!options.output.empty()) {
     if (image_format(options.output) != ImageFormat::kExr) {
@@ -193,6 +180,7 @@ void run(const FluxOptions& options) {
                      .views = views,
                      .settings = settings,
                      .results = {}};
+  bool is_partial = false;
   for (const FluxLight& light : lights) {
     scene.meter.beam.reset();
     if (light.sun) scene.meter.beam = -direction_of(*light.sun, up);
@@ -206,15 +194,20 @@ void run(const FluxOptions& options) {
     progress.finish();
     results.results.emplace_back(light, result);
     if (result.paths < settings.paths) {
+      is_partial = true;
       warn("interrupted after {} of {}", result.paths, counted(settings.paths, "path"));
     }
     if (stop.requested()) break;
   }
   if (results.results.empty()) fail("interrupted before any path of the result: wait longer");
   if (results.results.size() < lights.size()) {
+    is_partial = true;
     warn("interrupted: {} of {} suns are done", results.results.size(), lights.size());
   }
-  if (!options.output.empty()) write_maps(options.output, results);
+  if (is_partial) note_partial_result();
+  if (!options.output.empty()) {
+    write_maps(is_partial ? partial_name(options.output) : options.output, results);
+  }
   if (options.json) {
     print_json(results);
   } else {

@@ -26,11 +26,12 @@ namespace {
 constexpr const char* kRenderFooter =
     R"(Renders the densities of volume files (.vdb, .nvdb), without bias and without a limit to the
 number of scatterings. Several -o write the same picture several times; an .exr holds all channels,
-a .png the colour. Ctrl-C drops the paths under way, writes what there is, says how many samples
-that are, and exits with status 0; a second Ctrl-C ends at once. Where Ctrl-C or the end of --time
-come before every pixel has its first sample, that is waited for only if it will not take long
-(a second after Ctrl-C; as much time again and a second after --time): pixels without a sample are
-black with alpha 0, and counted in a warning, in --stats and in the .exr.
+a .png the colour, a .film all that merging and going on need. Ctrl-C drops the paths under way, writes
+what there is under partial names (picture.partial.exr), says how many samples that are, and exits with
+status 75; a second Ctrl-C ends at once. Where Ctrl-C or the end of --time come before every pixel has
+its first sample, that is waited for only if it will not take long (a second after Ctrl-C; as much time
+again and a second after --time): pixels without a sample are black with alpha 0, and counted in a
+warning, in --stats and in the .exr, which is partial too.
 
 Several volumes overlap as parts of one medium, each where its file puts it. Options of the medium
 are given once for all volumes, or once for each in the order of the files. Three grids, or a grid
@@ -61,7 +62,11 @@ Examples:
   freepath render smoke.vdb fire.vdb -o both.exr --albedo 0.6 --albedo 0.2 --le 0 --le 9,3,0.5
   freepath render scene.pbrt -o scene.exr --spp 256 --color spectral
   freepath render dye.vdb -o dye.exr --grid red,green,blue --tracker spectral
-  freepath render smoke.%04d.vdb --frames 1-48 -o picture.%04d.exr --spp 64)";
+  freepath render smoke.%04d.vdb --frames 1-48 -o picture.%04d.exr --spp 64
+  freepath render cloud.vdb -o cloud.exr --noise 0.01
+  freepath render cloud.vdb -o cloud.exr --spp 4096 --checkpoint cloud.film --resume cloud.film
+  freepath render cloud.vdb -o part3.film --samples 128-191
+  freepath render cloud.vdb -o cloud.exr --transparent --exr half,dwaa:45)";
 
 /// The options as they were typed.
 struct RenderOptions {
@@ -129,7 +134,7 @@ void run_scene(const CLI::App& command, const RenderOptions& options) {
 void run(const CLI::App& command, const RenderOptions& options) {
   if (is_scene(options.picture)) return run_scene(command, options);
   if (options.outputs.empty())
-    fail("-o, --output is required: the picture to write, .exr, .png, .pfm or .qoi");
+    fail("-o, --output is required: the picture to write, .exr, .png, .pfm, .qoi or .film");
   check_wavelengths(command, read_color(options.picture, ColorMode::kRgb));
   // All that can be wrong with the options is said before the first second of work.
   const std::vector<PictureFiles> pictures =
@@ -169,7 +174,7 @@ void run(const CLI::App& command, const RenderOptions& options) {
 void add_output_options(CLI::App& command, RenderOptions& o) {
   command
       .add_option("-o,--output", o.outputs,
-                  "Picture to write, .exr, .png, .pfm or .qoi; may be repeated")
+                  "Picture to write, .exr, .png, .pfm, .qoi or .film; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->group("Picture");

@@ -170,9 +170,8 @@ std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
   if (plan.film.denoiser) {
     attempts.attempt([&] {
       // What is transparent has no background to be kept.
-      const LayerSet guides = plan.film.transparent
-                                  ? LayerSet{Layer::kAlbedo, Layer::kNormal}
-                                  : kDenoiserLayers;
+      const LayerSet guides =
+          plan.film.transparent ? LayerSet{Layer::kAlbedo, Layer::kNormal} : kDenoiserLayers;
       plan.film.denoiser->denoise(image, result.film.to_image(guides), plan.film.transparent);
     });
   }

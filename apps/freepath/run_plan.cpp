@@ -54,14 +54,13 @@ constexpr std::array kSeedModes{Choice<bool>{"frame", true}, Choice<bool>{"same"
 
 /// Options that no sample depends on, or of which a film or its identity tells elsewhere.
 constexpr std::array<std::string_view, 32> kWithoutInfluence = {
-    "help",           "output",        "spp",      "time",
-    "exposure",       "view",          "stats",    "frames",
-    "layers",         "crop",          "denoise",  "display",
-    "samples",        "tiles",         "resume",   "checkpoint",
-    "every",          "noise",         "progress", "seed-mode",
-    "seed",           "skip-existing", "threads",  "batch",
-    "simd",           "exr",           "size",     "tracker",        "transmittance", "color",    "interpolation",
-    "max-scatterings"};
+    "help",          "output",         "spp",     "time",          "exposure",
+    "view",          "stats",          "frames",  "layers",        "crop",
+    "denoise",       "display",        "samples", "tiles",         "resume",
+    "checkpoint",    "every",          "noise",   "progress",      "seed-mode",
+    "seed",          "skip-existing",  "threads", "batch",         "simd",
+    "exr",           "size",           "tracker", "transmittance", "color",
+    "interpolation", "max-scatterings"};
 
 /// A value as it is on any machine: of a file its name alone, as its contents count.
 std::string portable(const std::string& value) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,15 @@ a single value is for all layers. --mua, --mus and --thickness, in one unit of l
 --tau and --albedo; --phase, given once for all or once for each layer, is in place of --g. In thick
 layers that absorb, paths split on their way down, so that even 1e-9 of the light has an answer. Where
 no path came through, an upper limit at a confidence of 95 % is given instead. The result does not
-depend on --threads or --batch. Ctrl-C ends early, with the paths traced so far.
+depend on --threads or --batch. With --error a first 65536 paths tell how many it takes, and have no
+part in the result. Ctrl-C ends early, with the paths traced so far, and exit status 75.
 
 Methods take options after their name: weighted-delta:rate-scale=2
 
 Examples:
   freepath slab --tau 2 --albedo 0.9 --g 0.75
   freepath slab --tau 0.25,0.25 --albedo 0.5,0.3 --g 0 --json
+  freepath slab --tau 4 --albedo 0.99 --error 1e-3
   freepath slab --tau inf --albedo 0.99 --diffuse          (white-sky albedo of a half-space)
   freepath slab --tau 20 --albedo 0.5                      (a transmittance of some 1e-9)
   freepath slab --mua 0.1,0.03 --mus 10,20 --thickness 0.5,2 --g 0.9        (tissue; 1/mm and mm)
@@ -53,7 +56,7 @@ struct SlabOptions {
   std::vector<std::string> phases;
   double mu0 = SlabSettings{}.mu0;
   bool diffuse = false;
-  std::string paths = "1e6";
+  std::string paths, error;
   std::string tracker = WalkSettings{}.tracker, absorption = "weighted", simd = "best";
   uint64_t seed = 0;
   int threads = 0;
@@ -174,7 +177,7 @@ SlabSettings read_settings(const SlabOptions& options) {
   SlabSettings settings;
   settings.mu0 = options.mu0;
   settings.diffuse = options.diffuse;
-  settings.paths = parse_count(options.paths, "--paths", 1, 1e15);
+  if (!options.paths.empty()) settings.paths = parse_count(options.paths, "--paths", 1, 1e15);
   settings.threads = settle_threads(options.threads);
   settings.batch = options.batch;
   settings.super_voxel = options.super_voxel;
@@ -214,14 +217,39 @@ void print_table(const SlabResult& result) {
   }
 }
 
+/// Number of paths that an error takes, by a few that have no part in the result.
+uint64_t paths_for(double error, std::span<const SlabLayer> layers, SlabSettings settings,
+                   const FluxProgress& progress) {
+  settings.paths = kPilotPaths;
+  settings.walk.seed = pilot_seed(settings.walk.seed);
+  const SlabResult pilot = trace_slab(layers, settings, progress);
+  const double largest =
+      std::max({pilot.reflectance.error, pilot.transmittance.error, pilot.total.error});
+  return paths_for_error(error, largest, "--error");
+}
+
 void run(const SlabOptions& options) {
+  if (!options.paths.empty() && !options.error.empty()) {
+    fail("--paths and --error both say when to end; give one or the other");
+  }
   const std::vector<SlabLayer> layers = read_layers(options);
-  const SlabSettings settings = read_settings(options);
+  SlabSettings settings = read_settings(options);
   const StopOnInterrupt stop;
   PathProgress progress(stop);
-  const SlabResult result = trace_slab(
-      layers, settings, [&](uint64_t done, uint64_t total) { return progress.show(done, total); });
+  const FluxProgress show = [&](uint64_t done, uint64_t total) {
+    return progress.show(done, total);
+  };
+  if (!options.error.empty()) {
+    settings.paths = paths_for(parse_error(options.error, "--error"), layers, settings, show);
+  }
+  if (stop.requested()) fail("interrupted before any path of the result: wait longer");
+  const SlabResult result = trace_slab(layers, settings, show);
   progress.finish();
+  if (result.paths == 0) fail("interrupted before any path of the result: wait longer");
+  if (result.paths < settings.paths) {
+    warn("interrupted after {} of {}", result.paths, counted(settings.paths, "path"));
+    note_partial_result();
+  }
   warn_if_biased(result.tracker);
   if (options.json) {
     print_json(result, settings);
@@ -273,7 +301,9 @@ void add_method_options(CLI::App& command, SlabOptions& o) {
 }
 
 void add_result_options(CLI::App& command, SlabOptions& o) {
-  command.add_option("--paths", o.paths, "Paths to trace")->capture_default_str();
+  command.add_option("--paths", o.paths, "Paths to trace [1e6]");
+  command.add_option("--error", o.error,
+                     "In place of it the standard error to reach, of each of the three fluxes");
   add_run_options(command, {o.seed, o.threads, o.batch, o.simd});
   command.add_flag("--json", o.json, "Print one JSON object instead of a table");
 }

@@ -111,8 +111,7 @@ struct ExrFormat {
 /// The file is written aside, in the same folder, and then renamed: a reader never sees half of it,
 /// and an old one survives a failure.
 /// @throws Error that names the file
-void write_exr(const std::string& path, const Image& image,
-               const ExrFormat& format = {});
+void write_exr(const std::string& path, const Image& image, const ExrFormat& format = {});
 
 /// How light becomes a picture of 8 bits.
 struct PictureLook {

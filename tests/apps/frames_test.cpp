@@ -289,9 +289,8 @@ TEST_F(FramesTest, CtrlCWritesTheFrameAndSaysWhichAreDone) {
   EXPECT_NE(outcome.messages.find("--frames 1 are done; to render the others, give --frames 2-3"),
             std::string::npos)
       << outcome;
-  EXPECT_EQ(files(),
-            (Names{"p.1.exr", "p.2.partial.exr", "smoke.0001.vdb", "smoke.0002.vdb",
-                   "smoke.0003.vdb"}));
+  EXPECT_EQ(files(), (Names{"p.1.exr", "p.2.partial.exr", "smoke.0001.vdb", "smoke.0002.vdb",
+                            "smoke.0003.vdb"}));
 }
 
 }  // namespace

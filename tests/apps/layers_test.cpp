@@ -237,8 +237,8 @@ TEST_F(LayersTest, DenoisesAlphaOfWhatIsTransparent) {
     const float red = 2 * std::max(0.0F, value(image, "noisy.R", i)) + value(image, "albedo.R", i) +
                       value(image, "normal.X", i);
     EXPECT_NEAR(value(image, "R", i), red, 1e-5F * (1 + red));
-    const float alpha = 2 * value(image, "noisy.A", i) + value(image, "albedo.R", i) +
-                        value(image, "normal.X", i);
+    const float alpha =
+        2 * value(image, "noisy.A", i) + value(image, "albedo.R", i) + value(image, "normal.X", i);
     EXPECT_NEAR(value(image, "A", i), std::clamp(alpha, 0.0F, 1.0F), 1e-5F);
   }
 }
@@ -275,7 +275,8 @@ TEST_F(LayersTest, WritesTheFormsOfExrThatAreAskedFor) {
   const std::string render = "render ball.vdb --size 32x24 --spp 4 --layers all -o ";
   ASSERT_EQ(run(render + "a.exr").status, 0);
   const Image exact = read_image(path("a.exr"));
-  for (const std::string form : {"half", "float,piz", "zips,half", "half,dwaa:20", "dwab", "none"}) {
+  for (const std::string form :
+       {"half", "float,piz", "zips,half", "half,dwaa:20", "dwab", "none"}) {
     ASSERT_EQ(run(render + "b.exr --exr " + form).status, 0) << form;
     const Image image = read_image(path("b.exr"));
     ASSERT_EQ(image.channels, exact.channels) << form;
@@ -290,8 +291,7 @@ TEST_F(LayersTest, WritesTheFormsOfExrThatAreAskedFor) {
       if (is_kept && tolerance < 0.01F) {
         EXPECT_EQ(image.values[i], exact.values[i]) << form << channel;
       }
-      EXPECT_NEAR(image.values[i], exact.values[i],
-                  tolerance * (0.1F + std::abs(exact.values[i])))
+      EXPECT_NEAR(image.values[i], exact.values[i], tolerance * (0.1F + std::abs(exact.values[i])))
           << form << channel;
     }
   }

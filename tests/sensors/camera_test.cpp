@@ -137,7 +137,8 @@ TEST(Camera, CoordinatesOfPointsOnRaysAreThoseOfTheFilm) {
         CameraModel(OrthographicCamera{.screen_window = ScreenWindow{-1, 0.5, -0.2, 2}})}) {
     const Camera camera(model, place, 64, 40);
     const Matrix4d ndc = camera.ndc_from_world().value();
-    for (const auto& [x, y] : {std::pair(0.0F, 0.0F), std::pair(64.0F, 40.0F), std::pair(20.0F, 5.0F)}) {
+    for (const auto& [x, y] :
+         {std::pair(0.0F, 0.0F), std::pair(64.0F, 40.0F), std::pair(20.0F, 5.0F)}) {
       const CameraRay ray = camera.ray(x, y);
       for (const double t : {2.0, 9.0}) {
         const Vec3d point = ray.origin + Vec3d(ray.direction) * t;
