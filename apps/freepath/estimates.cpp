@@ -7,8 +7,8 @@
 
 #include "apps/freepath/console.h"
 #include "apps/freepath/parse.h"
-#include "freepath/base/error.h"
 #include "freepath/base/counted.h"
+#include "freepath/base/error.h"
 
 namespace freepath::program {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// @file Means and their errors, as slab and flux say them.
 
-#include <string_view>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "freepath/base/moments.h"
 

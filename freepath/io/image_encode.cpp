@@ -62,12 +62,12 @@ void set_metadata(Imf::Header& header, const Image& image) {
   }
 }
 
+/// Says them always: not all readers take the format's word for those of a file without.
 void set_chromaticities(Imf::Header& header, const Image& image) {
-  if (!image.chromaticities) return;
   const auto vector = [](const Chromaticity& c) {
     return Imath::V2f(static_cast<float>(c.x), static_cast<float>(c.y));
   };
-  const auto& [primaries, white] = *image.chromaticities;
+  const auto& [primaries, white] = image.chromaticities.value_or(RgbChromaticities());
   Imf::addChromaticities(header, Imf::Chromaticities(vector(primaries.red), vector(primaries.green),
                                                      vector(primaries.blue), vector(white)));
 }

@@ -24,8 +24,9 @@ class FarmTest : public ProgramTest {
 
   /// Runs a line with the program on the PATH and the recipes in $farm.
   Outcome recipe(const std::string& line) const {
-    return shell("unset -f freepath; unalias freepath 2>/dev/null; export PATH=$PWD/bin:$PATH; farm=" +
-                 std::string(FREEPATH_FARM_EXAMPLES) + "; " + line);
+    return shell(
+        "unset -f freepath; unalias freepath 2>/dev/null; export PATH=$PWD/bin:$PATH; farm=" +
+        std::string(FREEPATH_FARM_EXAMPLES) + "; " + line);
   }
 
   void expect_whole(const std::string& picture) const {
