@@ -29,7 +29,6 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       kernels_(setup.factory->scattering()),
       shadows_(*setup.scene, places_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
-  std::iota(slots_.begin(), slots_.end(), uint32_t{0});
   if (scene_.surfaces) hits_.resize(setup.slots);
   if (!scene_.surfaces && scene_.media.size() == 1 && !scene_.domain && meter_ == nullptr) {
     const Box3d box = scene_.media[0].outer_bounds();
@@ -56,6 +55,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   records_spectra_ = film.buckets().count > 0;
   window_ = film.window();
   active_ = next_path_ = paths_of_newest_ = 0;
+  std::iota(slots_.begin(), slots_.end(), uint32_t{0});  // in order, as memory likes to be read
   sent_.clear();
   sent_in_vacuum_.clear();
   has_more_jobs_ = true;
@@ -149,8 +149,9 @@ void PathWavefront::end_path(ScenePath& path, const PathJobSource& jobs, Film& f
 void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
   for (std::size_t i = 0; i < active_;) {
     constexpr std::size_t kAhead = 8;
-    const ScenePath& ahead = paths_[slots_[std::min(i + kAhead, active_ - 1)]];
-    if (ahead.is_dead && meter_ == nullptr) __builtin_prefetch(&result_of(ahead), 1);
+    const ScenePath* const ahead = &paths_[slots_[std::min(i + kAhead, active_ - 1)]];
+    __builtin_prefetch(ahead);
+    if (scene_.surfaces) __builtin_prefetch(&ahead->origin);  // most are sent from here
     const uint32_t slot = slots_[i];
     ScenePath& path = paths_[slot];
     if (!path.is_dead || take_branch(path)) {
