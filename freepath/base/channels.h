@@ -1,7 +1,6 @@
 #pragma once
 /// @file What a path carries: a value in each of its channels.
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -47,22 +46,35 @@ class alignas(16) Channels {
   std::array<float, kMaxChannels> values_{};
 };
 
-inline bool is_black(const Channels& c) { return c == Channels(); }
-inline bool is_finite(const Channels& c) {
-  float product = 0;  // NaN as soon as one channel is infinite or NaN
-  for (int i = 0; i < kMaxChannels; ++i) product += 0 * c[i];
-  return product == 0;
+/// All channels as one number, half by half: a few vector instructions, where one channel after the
+/// other would wait for the one before.
+template <class Combine>
+constexpr float fold(const Channels& c, const Combine& combine) {
+  Channels left = c;
+  for (int count = kMaxChannels; count > 1; count = (count + 1) / 2) {
+    const int half = (count + 1) / 2;
+    for (int i = 0; i < count / 2; ++i) left[i] = combine(left[i], left[i + half]);
+  }
+  return left[0];
 }
+/// The sum of all channels.
+constexpr float sum_of(const Channels& c) {
+  return fold(c, [](float a, float b) { return a + b; });
+}
+/// 0, or NaN if a channel is infinite or NaN.
+constexpr float zero_if_finite(const Channels& c) { return sum_of(c - c); }
+
+constexpr bool is_black(const Channels& c) {
+  int lit = 0;
+  for (int i = 0; i < kMaxChannels; ++i) lit |= c[i] == 0 ? 0 : -1;
+  return lit == 0;
+}
+constexpr bool is_finite(const Channels& c) { return zero_if_finite(c) == 0; }
 /// Largest magnitude of all channels; NaN if a channel is infinite or NaN.
 inline float largest_magnitude(const Channels& c) {
-  float largest = 0;
-  float nothing = 0;  // or NaN
-  for (int i = 0; i < kMaxChannels; ++i) {
-    const float magnitude = std::abs(c[i]);
-    largest = std::max(largest, magnitude);
-    nothing += magnitude - magnitude;
-  }
-  return largest + nothing;
+  Channels magnitude;
+  for (int i = 0; i < kMaxChannels; ++i) magnitude[i] = std::abs(c[i]);
+  return fold(magnitude, [](float a, float b) { return a < b ? b : a; }) + zero_if_finite(c);
 }
 
 }  // namespace freepath

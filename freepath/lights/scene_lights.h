@@ -60,14 +60,21 @@ class SceneLights {
   /// Whether there is a light to draw.
   bool is_drawn() const { return infinite_.is_drawn() || !distant_.empty() || !chooser_.is_dark(); }
 
- private:
+  /// Light from one direction.
   struct Distant {
-    Vec3f towards;
+    Vec3f towards;  ///< Direction towards it, unit [world].
     SpectrumId radiance;
-    float scale;
-    float share;  // probability among parallel lights
-    float distance;
+    float scale;     ///< Of that spectrum.
+    float share;     ///< Probability of drawing it among lights of this kind.
+    float distance;  ///< LightDraw::distance.
   };
+  /// The one light that all draws are of, wherever they are made: their direction and radiance are
+  /// always the same, their density 1. Null if there are others to draw, or none.
+  const Distant* only_light() const {
+    return distant_share_ == 1 && distant_.size() == 1 ? distant_.data() : nullptr;
+  }
+
+ private:
   struct Emission {
     SpectrumId radiance;
     bool two_sided = false;

@@ -43,6 +43,12 @@ class FieldLookup {
     }
   }
 
+  /// Makes all that lanes which look nothing up read of a state 0.
+  HWY_INLINE void clear(State& state) const {
+    std::memset(state.address, 0, medium_.component_count * sizeof(state.address[0]));
+    std::memset(state.taps, 0, medium_.component_count * sizeof(state.taps[0]));
+  }
+
   /// Stage 1: the voxel to read at a point [walk space]; the random words choose among the eight
   /// neighbours under stochastic interpolation. One tap serves all components of an aligned medium;
   /// in others each component has its own, by the same random words: what is estimated is linear in
@@ -64,7 +70,7 @@ class FieldLookup {
   /// Asks for the index entries of the voxels aimed at.
   HWY_INLINE void prefetch_index(const State& state) const {
     if (medium_.components[0].function != nullptr) return;
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       prefetch_lanes(medium_.components[k].index, tap_of(k, state).entry);
     }
   }
@@ -82,7 +88,7 @@ class FieldLookup {
     if (medium_.components[0].function != nullptr) return compute(state);
     VecI within = voxel_in_brick(state.taps[0]);
     VecI entry = hn::Load(kInt, state.taps[0].entry);
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       if (k > 0) take_next_tap(k, state, entry, within);
       hn::Store(voxel_address(k, entry, within), kInt, state.address[k]);
       prefetch_lanes(medium_.components[k].voxels, state.address[k]);
@@ -94,7 +100,7 @@ class FieldLookup {
     VecI within = voxel_in_brick(state.taps[0]);
     VecI entry = hn::Load(kInt, state.taps[0].entry);
     const VecI wanted = hn::Load(kInt, component);
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       if (k > 0) take_next_tap(k, state, entry, within);
       const MaskI mine = hn::Eq(wanted, hn::Set(kInt, k));
       const VecI address = voxel_address(k, hn::IfThenElseZero(mine, entry), within);
@@ -139,7 +145,7 @@ class FieldLookup {
   /// Aims in a medium whose components have voxels of their own.
   HWY_NOINLINE void aim_at_each(const VecF (&point)[3], MaskF lanes, const VecU (&random)[3],
                                 State& state) const {
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       const AffineMap& map = medium_.components[k].walk_to_voxels;
       VecF place[3];
       for (int axis = 0; axis < 3; ++axis) {
@@ -194,7 +200,7 @@ class FieldLookup {
     const auto& [x, y, z] = state.taps[0].fraction;
     Vec3f positions[kLanes];
     for (size_t lane = 0; lane < kLanes; ++lane) positions[lane] = {x[lane], y[lane], z[lane]};
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       float densities[kLanes] = {};
       medium_.components[k].function->evaluate(positions, densities);
       // Their bits stand where the address of a voxel would.

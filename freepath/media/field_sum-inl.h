@@ -8,6 +8,8 @@
 #define FREEPATH_MEDIA_FIELD_SUM_INL_H_
 #endif
 
+#include <span>
+
 #include "freepath/media/field_lookup-inl.h"
 #include "freepath/media/radiance_field-inl.h"
 
@@ -44,7 +46,7 @@ class FieldSum {
   using Bounds = SegmentBounds<N>;
   using State = FieldLookup::State;
 
-  /// Control densities of a group, one row a lane.
+  /// Control densities of a group, one row a lane; of components that matter.
   struct Control {
     HWY_ALIGN_MAX float density[Medium::kMaxComponents][kLanes];
   };
@@ -64,10 +66,17 @@ class FieldSum {
   /// Of each channel: the albedo where all densities are the same.
   const float* albedo() const { return albedo_; }
 
-  int component_count() const { return medium_.component_count; }
+  /// Components that a collision looks up.
+  int component_count() const { return static_cast<int>(medium_.matter().size()); }
   /// MediumView::source
   int source(int channel) const { return medium_.source(channel); }
   const FieldLookup& lookup() const { return lookup_; }
+
+  /// Makes all that idle lanes read 0.
+  HWY_INLINE void clear(State& state) const { lookup_.clear(state); }
+  HWY_INLINE void clear(Control& control) const {
+    std::memset(control.density, 0, medium_.component_count * sizeof(control.density[0]));
+  }
 
   /// @param segment with the place of the super-voxel's record in Medium::walk_cells(), and its
   ///   first number, which is negative in an empty cell
@@ -77,7 +86,7 @@ class FieldSum {
     for (int channel = 0; channel < N; ++channel) {
       bounds.majorant[channel] = bounds.minorant[channel] = hn::Zero(kFloat);
     }
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       const VecF most = maximum(k, segment);
       const VecF least = kMinorant ? hn::GatherIndex(kFloat, medium_.minima + k, segment.record)
                                    : hn::Zero(kFloat);
@@ -97,7 +106,7 @@ class FieldSum {
 
   /// The control of a super-voxel: its minima times `scale`.
   HWY_INLINE void set_control(VecI record, float scale, Control& control) const {
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       const VecF least = hn::GatherIndex(kFloat, medium_.minima + k, record);
       hn::Store(hn::Mul(least, set(scale)), kFloat, control.density[k]);
     }
@@ -112,7 +121,7 @@ class FieldSum {
     for (int channel = 0; channel < N; ++channel) {
       left.sigma_t[channel] = left.scatter_size[channel] = hn::Zero(kFloat);
     }
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       const ComponentView& component = medium_.components[k];
       const VecF density = lookup_.density(k, state);
       const VecF size = hn::Abs(residual_density(k, state, control));
@@ -175,15 +184,17 @@ class FieldSum {
   template <class Segment, class Random>
   HWY_INLINE VecI draw_component(const Segment& segment, const Random& random, MaskF lanes,
                                  VecF& uniform, VecF& rate) const {
-    VecF parts[Medium::kMaxComponents];
-    for (int k = 0; k < medium_.component_count; ++k) {
+    VecF parts[Medium::kMaxComponents];  // in the order of those that matter
+    VecF* part = parts;
+    for (const int k : medium_.matter()) {
       const float sigma_t = medium_.components[k].sigma_a[0] + medium_.components[k].sigma_s[0];
-      parts[k] = hn::Mul(maximum(k, segment), set(sigma_t));
+      *part++ = hn::Mul(maximum(k, segment), set(sigma_t));
     }
     const VecI chosen = draw(parts, random, lanes, uniform);
     VecF chosen_rate = hn::Zero(kFloat);
-    for (int k = 0; k < medium_.component_count; ++k) {
-      assign(chosen_rate, float_mask(hn::Eq(chosen, hn::Set(kInt, k))), parts[k]);
+    part = parts;
+    for (const int k : medium_.matter()) {
+      assign(chosen_rate, float_mask(hn::Eq(chosen, hn::Set(kInt, k))), *part++);
     }
     rate = hn::IfThenElse(hn::Gt(chosen_rate, hn::Zero(kFloat)), chosen_rate, set(1.0F));
     return chosen;
@@ -198,11 +209,11 @@ class FieldSum {
   template <class Density>
   HWY_INLINE void add_emission(const Density& density_of, const VecF (&point)[3], MaskF lanes,
                                Coefficients& sum) const {
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       const ComponentView& component = medium_.components[k];
       if (component.radiance == nullptr) continue;
       VecF radiance[N];
-      radiance_at<N>(component.radiance, point, lanes, radiance);
+      radiance_at<N>(component.radiance, medium_.channels, point, lanes, radiance);
       const VecF density = density_of(k);
       for (int channel = 0; channel < N; ++channel) {
         const VecF scaled = hn::Mul(radiance[channel], set(component.radiance_scale[channel]));
@@ -228,14 +239,15 @@ class FieldSum {
   template <class Density>
   HWY_INLINE Coefficients sum(const Density& density_of) const {
     Coefficients sum;
-    const VecF first = density_of(0);
+    const std::span<const int32_t> matter = medium_.matter();
+    const VecF first = density_of(matter[0]);
     for (int channel = 0; channel < N; ++channel) {
-      const ComponentView& component = medium_.components[0];
+      const ComponentView& component = medium_.components[matter[0]];
       sum.sigma_a[channel] = hn::Mul(first, set(component.sigma_a[channel]));
       sum.sigma_s[channel] = hn::Mul(first, set(component.sigma_s[channel]));
       sum.emission[channel] = hn::Mul(first, set(component.emission[channel]));
     }
-    for (int k = 1; k < medium_.component_count; ++k) {
+    for (const int k : matter.subspan(1)) {
       const VecF density = density_of(k);
       const ComponentView& component = medium_.components[k];
       for (int channel = 0; channel < N; ++channel) {
@@ -273,39 +285,42 @@ class FieldSum {
   template <class Density, class Random>
   HWY_INLINE VecI choose(const Density& density_of, const Coefficients& total, const Random& random,
                          MaskF lanes, VecF (&weight)[N]) const {
-    VecI chosen = hn::Zero(kInt);
-    if (medium_.component_count == 1 || hn::AllFalse(kFloat, lanes)) return chosen;
+    const VecI first = hn::Set(kInt, medium_.matter()[0]);
+    if (medium_.matter().size() == 1 || hn::AllFalse(kFloat, lanes)) return first;
     VecF share[N];
     channel_shares(total, weight, share);
-    VecF parts[Medium::kMaxComponents];
+    VecF parts[Medium::kMaxComponents];  // in the order of those that matter
+    VecF* part = parts;
     VecF sum = hn::Zero(kFloat);
-    for (int k = 0; k < medium_.component_count; ++k) {
-      parts[k] = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
-      sum = hn::Add(sum, parts[k]);
+    for (const int k : medium_.matter()) {
+      *part = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
+      sum = hn::Add(sum, *part++);
     }
     VecF uniform = random.component_uniform();
-    chosen = draw(parts, random, lanes, uniform);
+    const VecI chosen = draw(parts, random, lanes, uniform);
     correct_weights(density_of, total, share, sum, chosen, lanes, weight);
     return chosen;
   }
 
-  /// Draws one of the components with probabilities in proportion to their parts, one after the
-  /// other against those after it, and leaves a number that is uniform whatever was drawn.
+  /// Draws one of the components that matter with probabilities in proportion to their parts, one
+  /// after the other against those after it, and leaves a number that is uniform whatever was
+  /// drawn.
   template <class Random>
   HWY_NOINLINE VecI draw(const VecF (&parts)[Medium::kMaxComponents], const Random& random,
                          MaskF lanes, VecF& uniform) const {
-    const int last = medium_.component_count - 1;
+    const std::span<const int32_t> matter = medium_.matter();
+    const int last = static_cast<int>(matter.size()) - 1;
     VecF after[Medium::kMaxComponents];
     after[last] = hn::Zero(kFloat);
     for (int k = last; k > 0; --k) after[k - 1] = hn::Add(after[k], parts[k]);
-    VecI chosen = hn::Zero(kInt);
+    VecI chosen = hn::Set(kInt, matter[0]);
     MaskF open = lanes;
     for (int k = 0; k < last; ++k) {
       VecF rest = uniform;
       const MaskF here = random.split(parts[k], after[k], open, uint32_t(k) + 1, rest);
       assign(uniform, open, rest);
       open = hn::AndNot(here, open);
-      chosen = hn::IfThenElse(int_mask(open), hn::Set(kInt, k + 1), chosen);
+      chosen = hn::IfThenElse(int_mask(open), hn::Set(kInt, matter[k + 1]), chosen);
     }
     return chosen;
   }
@@ -314,7 +329,7 @@ class FieldSum {
   HWY_INLINE void correct_weights(const Density& density_of, const Coefficients& total,
                                   const VecF (&share)[N], VecF sum, VecI chosen, MaskF lanes,
                                   VecF (&weight)[N]) const {
-    for (int k = 0; k < medium_.component_count; ++k) {
+    for (const int k : medium_.matter()) {
       const VecF part = hn::Mul(hn::Abs(density_of(k)), shared_sum(k, share));
       const MaskF mine = hn::And(hn::And(lanes, hn::Gt(part, hn::Zero(kFloat))),
                                  float_mask(hn::Eq(chosen, hn::Set(kInt, k))));

@@ -1,5 +1,7 @@
 #include "freepath/media/medium_view.h"
 
+#include <algorithm>
+
 #include <utility>
 
 #include "freepath/media/density_function.h"
@@ -31,6 +33,19 @@ void set_radiance(const std::vector<RadianceView>& views, MediumView& view) {
 }
 
 }  // namespace
+
+void MediumView::find_matter() {
+  matter_count_ = 0;
+  for (int k = 0; k < component_count; ++k) {
+    const auto is_there = [](float sigma) { return sigma != 0; };
+    const ComponentView& component = components[k];
+    if (std::any_of(component.sigma_a.begin(), component.sigma_a.end(), is_there) ||
+        std::any_of(component.sigma_s.begin(), component.sigma_s.end(), is_there)) {
+      matter_[matter_count_++] = k;
+    }
+  }
+  if (matter_count_ == 0) matter_[matter_count_++] = 0;
+}
 
 std::shared_ptr<const std::vector<RadianceView>> radiance_views_of(const Medium& medium,
                                                                    const WalkPart& part,
@@ -113,6 +128,7 @@ MediumView view_of(const Medium& medium, Interpolation interpolation,
       emission[slot] = values.sigma_a[channel] * values.emission[channel];
     }
   }
+  view.find_matter();
   const WalkPart& first = medium.parts()[0];
   show_part(medium, first, origin, radiance_views_of(medium, first, channels), view);
   return view;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "freepath/base/channels.h"
@@ -51,7 +52,10 @@ struct MediumView {
   std::array<float, 3> cell_origin{};  ///< Corner and edges of the first cell [world], where
   std::array<float, 3> cell_edge{};    ///< densities are computed.
   bool aligned = true;                 ///< Medium::aligned(): one voxel serves all components.
-  int component_count = 0;
+  int component_count = 0;  ///< Of the medium, as many as a record of `cells` has numbers.
+  /// Components that scatter or absorb in one of the channels, at least one: all others are of no
+  /// matter to a walk, and are not looked up.
+  std::span<const int32_t> matter() const { return {matter_.data(), matter_count_}; }
   int channels = 1;  ///< Of the paths; a walk of more repeats them.
   std::array<ComponentView, Medium::kMaxComponents> components{};
   /// What the components' radiance points at; null where emission does not vary.
@@ -59,6 +63,13 @@ struct MediumView {
 
   /// The channel of a path that a channel of the walk stands for.
   int source(int channel) const { return channel < channels ? channel : channel % channels; }
+
+  /// Finds the components that matter, by their cross sections.
+  void find_matter();
+
+ private:
+  std::array<int32_t, Medium::kMaxComponents> matter_{};
+  std::size_t matter_count_ = 0;
 };
 
 /// The view of a medium that is one part, or of the first of several.

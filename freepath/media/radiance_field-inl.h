@@ -72,11 +72,16 @@ HWY_INLINE VecF radiance_of(const RadianceView& view, VecF value) {
 }
 
 /// Radiances of N channels at points; channels that share a field share the look-up.
+/// @param channels that differ: those beyond repeat them
 template <int N>
-HWY_NOINLINE void radiance_at(const RadianceView* views, const VecF (&point)[3], MaskF lanes,
-                              VecF (&radiance)[N]) {
+HWY_NOINLINE void radiance_at(const RadianceView* views, int channels, const VecF (&point)[3],
+                              MaskF lanes, VecF (&radiance)[N]) {
   VecF value = hn::Zero(kFloat);
   for (int channel = 0; channel < N; ++channel) {
+    if (channel >= channels) {
+      radiance[channel] = radiance[channel - channels];
+      continue;
+    }
     const RadianceView& view = views[channel];
     if (channel == 0 || view.voxels != views[channel - 1].voxels) {
       value = interpolate_field(view, point, lanes);

@@ -2,35 +2,61 @@
 
 #include "freepath/paths/path_wavefront.h"
 
-namespace freepath {
+#include <algorithm>
+#include <limits>
+#include <utility>
 
-void PathWavefront::collide(std::size_t slot, float t, std::size_t component) {
+namespace freepath {
+namespace {
+
+Vec3f vector_at(const std::array<ScatteringStream::Row<float>, 3>& rows, std::size_t i) {
+  return {rows[0][i], rows[1][i], rows[2][i]};
+}
+
+/// Brightness of a light whose shadow rays don't play.
+constexpr float kNeverFaint = 1e30F;
+/// Where all are cast.
+constexpr ShadowRoulette kAllShadowRays;
+
+}  // namespace
+
+void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i) {
   ScenePath& path = paths_[slot];
-  const MediumWalkers::Origin scatterer = scatterer_of(path, component);
+  const std::size_t component = flights_.component[i];
   if (jobs_.layers.on()) {
     jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
-  const Vec3f position = path.origin + path.direction * t;
-  if (meter_ != nullptr) absorb_part(path, position, component);
-  if (path.scatterings++ == 0 && meter_ == nullptr) record_medium_event(path, t, scatterer);
+  if (meter_ != nullptr) absorb_part(path, position_of(batch.rays, i), component);
+  if (path.scatterings++ == 0 && meter_ == nullptr) {
+    record_medium_event(path, flights_.t[i], scatterer_of(path, component));
+  }
   if (is_cut(path)) {
     count_cut(path, Channels(1));
     path.is_dead = true;
     return;
   }
-  const PhaseFunction& phase = scene_.media[scatterer.medium].phase(scatterer.component);
-  const std::size_t i = scatterings_.count++;
-  Scattering& scattering = scattered_[i];
-  scattering.slot = slot;
-  scattering.position = position;
-  scattering.phase = &phase;
-  scatterings_.pixel[i] = path.pixel;
-  scatterings_.sample[i] = path.sample_key;
-  scatterings_.stream[i] = stream_number(StreamPurpose::kScatter, path.flights);
-  for (int axis = 0; axis < 3; ++axis) scatterings_.direction[axis][i] = path.direction[axis];
+  if (component != scatterer_.component) set_scatterer(path, component);
+  if (scatterings_.count == ScatteringStream::kCapacity) scatter_in_media(batch);
+  const std::size_t n = scatterings_.count++;
+  scattered_[n].slot = static_cast<uint32_t>(slot);
+  scattered_[n].phase = scatterer_.phase;
+  scatterings_.ray[n] = static_cast<uint32_t>(i);
+  scatterings_.is_given[n] = scatterer_.is_given;
+  scatterings_.g[n] = scatterer_.g;
+}
+
+void PathWavefront::set_scatterer(const ScenePath& path, std::size_t component) {
+  const MediumWalkers::Origin origin = scatterer_of(path, component);
+  const PhaseFunction& phase = scene_.media[origin.medium].phase(origin.component);
   const HenyeyGreenstein* const function = phase.as_henyey_greenstein();
-  scatterings_.g[i] = function != nullptr ? function->g() : 0;
-  if (scatterings_.count == ScatteringStream::kCapacity) scatter_in_media();
+  scatterer_ = {component, &phase, function != nullptr ? function->g() : 0,
+                function != nullptr ? 0U : 1U};
+}
+
+Vec3f PathWavefront::position_of(const RayStream& rays, std::size_t i) const {
+  const Vec3f origin{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]};
+  const Vec3f direction{rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
+  return origin + direction * flights_.t[i];
 }
 
 bool PathWavefront::survives(ScenePath& path, float u) const {
@@ -43,102 +69,179 @@ bool PathWavefront::survives(ScenePath& path, float u) const {
   return true;
 }
 
-void PathWavefront::draw_light_of(std::size_t i) {
+float PathWavefront::brightness(const ScenePath& path, const Channels& radiance, bool in_rgb,
+                                float distance) const {
+  if (setup_.shadow_guide == nullptr || !ShadowGuide::plays(path.scatterings, distance)) {
+    return kNeverFaint;
+  }
+  const float sum = sum_of(radiance);  // of those that are not in use 0
+  if (in_rgb) return sum * (1.0F / 3);
+  return sum * (path.channel < 0 ? path.colors->per_white : path.colors->mean_per_white);
+}
+
+void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
   Scattering& scattering = scattered_[i];
-  const ScenePath& path = paths_[scattering.slot];
+  scattering.in_rgb = sees_rgb(path);
+  const Channels light = light_spectra(path, scattering.in_rgb)[only_light_->radiance];
+  scattering.radiance = light_throughput(path, scattering.in_rgb) * light * only_light_->scale;
+  scatterings_.brightness[i] =
+      brightness(path, scattering.radiance, scattering.in_rgb, only_light_->distance);
+}
+
+void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
+  Scattering& scattering = scattered_[i];
   scattering.in_rgb = sees_rgb(path);
   std::array<float, 3> u{};
   for (uint32_t k = 0; k < 3; ++k) u[k] = scatterings_.numbers[kLightNumber + k][i];
-  scattering.light = draw_light(scattering.position, light_spectra(path, scattering.in_rgb), u);
-  const Vec3f& to_light = scattering.light.direction;
-  for (int axis = 0; axis < 3; ++axis) scatterings_.to_light[axis][i] = to_light[axis];
+  const LightDraw draw =
+      draw_light(vector_at(scatterings_.position, i), light_spectra(path, scattering.in_rgb), u);
+  scattering.end = shadow_end(draw);
+  scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance;
+  scatterings_.light_pdf[i] = draw.pdf;
+  scatterings_.light_found[i] = draw.delta ? 0.0F : 1.0F;
+  scatterings_.brightness[i] =
+      brightness(path, scattering.radiance, scattering.in_rgb, draw.distance);
+  for (int axis = 0; axis < 3; ++axis) scatterings_.to_light[axis][i] = draw.direction[axis];
 }
 
-float PathWavefront::shadow_survival(const ScenePath& path, const Vec3f& position,
-                                     const LightDraw& light, const Channels& radiance,
-                                     bool in_rgb) const {
-  const ShadowGuide* const guide = setup_.shadow_guide;
-  if (guide == nullptr || std::isfinite(light.distance)) return 1;
-  float brightness = 0;
-  if (in_rgb) {
-    brightness = (radiance[0] + radiance[1] + radiance[2]) / 3;
-  } else {
-    brightness = path.mean(radiance) * path.colors->per_white;
+void PathWavefront::set_only_light() {
+  only_light_ = meter_ == nullptr ? scene_.lights->only_light() : nullptr;
+  if (only_light_ == nullptr) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    scatterings_.to_light[axis].fill(only_light_->towards[axis]);
   }
-  return guide->survival(path.scatterings, path.medium, position, light.direction, brightness);
+  scatterings_.light_pdf.fill(1);
+  scatterings_.light_found.fill(0);
+  for (Scattering& scattering : scattered_) scattering.end = {only_light_->distance, {}};
 }
 
 void PathWavefront::cast_shadow(std::size_t i) {
   const Scattering& scattering = scattered_[i];
-  const LightDraw& light = scattering.light;
-  if (!(light.pdf > 0)) return;
-  const ScenePath& path = paths_[scattering.slot];
-  // The phase function is its own density.
-  const float value = scattering.phase->as_henyey_greenstein() != nullptr
-                          ? scatterings_.light_value[i]
-                          : scattering.phase->evaluate(path.direction, light.direction);
-  const float share = light.delta ? value / light.pdf : value / (light.pdf + value);
-  Channels radiance = light_throughput(path, scattering.in_rgb) * light.radiance * share;
+  const float share = scatterings_.light_share[i];
+  if (share == 0) return;
+  const float survival = scatterings_.shadow_survival[i];
+  if (survival < 1 && scatterings_.numbers[kShadowNumber][i] >= survival) return;
+  Channels radiance = scattering.radiance * share;
+  if (survival < 1) radiance *= 1 / survival;
   if (is_black(radiance)) return;
-  const float survival =
-      shadow_survival(path, scattering.position, light, radiance, scattering.in_rgb);
-  if (survival < 1) {
-    if (scatterings_.numbers[kShadowNumber][i] >= survival) return;
-    radiance *= 1 / survival;
-  }
-  shadows_.add(static_cast<uint32_t>(scattering.slot), path, scattering.position, light.direction,
-               shadow_end(light), path.place, radiance, scattering.in_rgb);
+  const ScenePath& path = paths_[scattering.slot];
+  shadows_.add(scattering.slot, path, vector_at(scatterings_.position, i),
+               vector_at(scatterings_.to_light, i), scattering.end, path.place, radiance,
+               scattering.in_rgb);
 }
 
-void PathWavefront::scatter_in_media() {
+void PathWavefront::draw_direction_of(std::size_t i) {
+  const PhaseSample next = scattered_[i].phase->sample(vector_at(scatterings_.direction, i),
+                                                       scatterings_.numbers[kPhaseNumber][i],
+                                                       scatterings_.numbers[kPhaseNumber + 1][i]);
+  for (int axis = 0; axis < 3; ++axis) scatterings_.next[axis][i] = next.direction[axis];
+  scatterings_.next_pdf[i] = next.pdf;
+}
+
+void PathWavefront::turn_scattered(std::size_t i, ScenePath& path) {
+  path.pdf = scatterings_.next_pdf[i];
+  const bool has_side = meter_ != nullptr || scene_.domain;
+  if (has_side || scene_.surfaces) {
+    const Vec3f position = vector_at(scatterings_.position, i);
+    if (has_side || !scene_.is_clear_at(path.medium, position)) {
+      Vec3f direction = vector_at(scatterings_.next, i);
+      if (meter_ != nullptr) meter_->tilt(direction);
+      turn(path, position, position, direction);
+      return;
+    }
+  }
+  // Most rays are needed nowhere but in the stream that is walked next.
+  path.ends_at_surface = false;
+  path.surfaces_known = false;
+  path.emission_share = 1;
+  path.turned_in = ++path.flights;
+  path.is_sent = path.is_in_rays = true;
+  going_on_[going_on_count_++] = static_cast<uint32_t>(i);
+}
+
+void PathWavefront::send_scattered(const Walker& walker) {
+  const std::size_t count = std::exchange(going_on_count_, 0);
+  if (count == 0) return;
+  auto [batch, first] = sent_.add_all(walker, count);
+  RayStream& rays = batch.rays;
+  const auto copy = [&, first = first](const auto& row, auto& values) {
+    for (std::size_t n = 0; n < count; ++n) values[first + n] = row[going_on_[n]];
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    copy(scatterings_.position[axis], rays.origin[axis]);
+    copy(scatterings_.next[axis], rays.direction[axis]);
+  }
+  std::fill_n(rays.t_max.begin() + static_cast<std::ptrdiff_t>(first), count,
+              std::numeric_limits<float>::infinity());
+  copy(scatterings_.pixel, rays.pixel);
+  copy(scatterings_.sample, rays.sample);
+  constexpr uint32_t kToNextWalk =
+      stream_number(StreamPurpose::kWalk, 1) - stream_number(StreamPurpose::kScatter, 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    rays.stream[first + n] = scatterings_.stream[going_on_[n]] + kToNextWalk;
+    batch.owners[first + n] = scattered_[going_on_[n]].slot;
+  }
+  if (!rays.weighted()) return;
+  for (std::size_t n = 0; n < count; ++n) {
+    const ScenePath& path = paths_[batch.owners[first + n]];
+    for (int c = 0; c < walker.channels(); ++c) {
+      rays.weight[c][first + n] = path.throughput[c];
+      rays.density[c][first + n] = path.density[c];
+    }
+  }
+}
+
+void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   if (scatterings_.count == 0) return;
-  kernels_.draw_numbers(scatterings_, setup_.seed);
+  kernels_.gather(batch.rays, flights_, scatterings_);
   const bool draws_lights = meter_ == nullptr && scene_.lights->is_drawn();
+  const bool chooses_light = draws_lights && only_light_ == nullptr;
+  kernels_.draw_numbers(scatterings_, setup_.seed,
+                        chooses_light ? kScatteringBlocks : kBlocksWithoutLight);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
     path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
-    if (draws_lights && !path.is_dead) draw_light_of(i);
+    if (path.is_dead || !draws_lights) continue;
+    chooses_light ? draw_light_of(i, path) : take_only_light(i, path);
+    if (scatterings_.is_given[i] != 0) {
+      scatterings_.light_value[i] = scattered_[i].phase->evaluate(
+          vector_at(scatterings_.direction, i), vector_at(scatterings_.to_light, i));
+    }
   }
-  kernels_.scatter(scatterings_);
+  const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
+  const ShadowGuide* const shadows = setup_.shadow_guide;
+  kernels_.scatter(scatterings_, shadows != nullptr ? shadows->roulette(medium) : kAllShadowRays);
+  const EmissionGuide* const guide = guide_of(medium);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
-    const auto& [slot, position, phase, in_rgb, light] = scattered_[i];
-    ScenePath& path = paths_[slot];
+    ScenePath& path = paths_[scattered_[i].slot];
     if (path.is_dead) continue;
-    if (meter_ != nullptr) show_collision(slot, position, *phase);
+    if (meter_ != nullptr) show_collision(i);
     if (draws_lights) cast_shadow(i);
-    const EmissionGuide* const guide = guide_of(path.medium);
+    if (guide != nullptr) draw_emission(i, *guide);
+    if (scatterings_.is_given[i] != 0) draw_direction_of(i);
+    turn_scattered(i, path);
     if (guide != nullptr) {
-      RandomStream random(setup_.seed, path.pixel, path.sample_key, scatterings_.stream[i],
-                          kScatteringBlocks);
-      draw_emission(slot, *guide, position, *phase, random);
-    }
-    PhaseSample next;
-    if (phase->as_henyey_greenstein() != nullptr) {
-      next.direction = {scatterings_.next[0][i], scatterings_.next[1][i], scatterings_.next[2][i]};
-      next.pdf = scatterings_.next_pdf[i];
-    } else {
-      next = phase->sample(path.direction, scatterings_.numbers[kPhaseNumber][i],
-                           scatterings_.numbers[kPhaseNumber + 1][i]);
-    }
-    if (meter_ != nullptr) meter_->tilt(next.direction);
-    path.pdf = next.pdf;
-    turn(path, position, position, next.direction);
-    if (guide != nullptr) {
-      path.emission_share = next.pdf / (next.pdf + guide->pdf(position, next.direction));
+      const float found =
+          guide->pdf(vector_at(scatterings_.position, i), vector_at(scatterings_.next, i));
+      path.emission_share = path.pdf / (path.pdf + found);
     }
   }
+  send_scattered(*batch.walker);
   scatterings_.count = 0;
 }
 
-void PathWavefront::draw_emission(std::size_t slot, const EmissionGuide& guide,
-                                  const Vec3f& position, const PhaseFunction& phase,
-                                  RandomStream& random) {
-  const ScenePath& path = paths_[slot];
+void PathWavefront::draw_emission(std::size_t i, const EmissionGuide& guide) {
+  const Scattering& scattering = scattered_[i];
+  const ScenePath& path = paths_[scattering.slot];
+  const Vec3f position = vector_at(scatterings_.position, i);
+  RandomStream random(setup_.seed, path.pixel, path.sample_key, scatterings_.stream[i],
+                      kScatteringBlocks);
   const auto drawn = guide.sample(position, random);
   if (!drawn || !(drawn->pdf > 0)) return;
   // The phase function is its own density; the balance heuristic leaves this of f / pdf.
-  const float value = phase.evaluate(path.direction, drawn->direction);
-  emissions_.add(static_cast<uint32_t>(slot), path, position, drawn->direction,
+  const float value =
+      scattering.phase->evaluate(vector_at(scatterings_.direction, i), drawn->direction);
+  emissions_.add(scattering.slot, path, position, drawn->direction,
                  path.throughput * (value / (value + drawn->pdf)));
 }
 

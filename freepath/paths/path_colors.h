@@ -39,7 +39,8 @@ class PathColors {
   PathColors(const ColorFactory& factory, SpectrumValues values,
              std::vector<std::shared_ptr<const MediumWalkers>> walkers)
       : spectra(std::move(values)),
-        per_white(1 / mean_of_white(spectra)),
+        per_white(1 / sum_of(spectra.illuminant(Vec3f(1)))),
+        mean_per_white(per_white * static_cast<float>(spectra.channels())),
         media(std::move(walkers)),
         factory_(factory) {}
 
@@ -55,19 +56,14 @@ class PathColors {
   }
 
   const SpectrumValues spectra;
-  /// What makes the mean of a radiance's channels 1 where it is white: an illuminant of R, G, B
-  /// = 1.
+  /// What makes the sum of a radiance's channels 1 where it is white: an illuminant of R, G, B = 1.
   const float per_white;
+  /// The same of their mean.
+  const float mean_per_white;
   const std::vector<std::shared_ptr<const MediumWalkers>> media;
 
  private:
   const MediumWalkers& combination(MediumId medium) const;
-  static float mean_of_white(const SpectrumValues& spectra) {
-    const Channels white = spectra.illuminant(Vec3f(1));
-    float sum = 0;
-    for (int c = 0; c < spectra.channels(); ++c) sum += white[c];
-    return sum / static_cast<float>(spectra.channels());
-  }
 
   const ColorFactory& factory_;
   mutable std::shared_mutex mutex_;

@@ -72,15 +72,20 @@ void PathWavefront::absorb_part(const ScenePath& path, const Vec3f& position,
           path.throughput[0] * share);
 }
 
-void PathWavefront::show_collision(std::size_t slot, const Vec3f& position,
-                                   const PhaseFunction& phase) {
-  const ScenePath& path = paths_[slot];
+void PathWavefront::show_collision(std::size_t scattering) {
+  const Scattering& scattered = scattered_[scattering];
+  const ScenePath& path = paths_[scattered.slot];
+  const auto vector_of = [&](const std::array<ScatteringStream::Row<float>, 3>& rows) {
+    return Vec3f(rows[0][scattering], rows[1][scattering], rows[2][scattering]);
+  };
+  const Vec3f position = vector_of(scatterings_.position);
+  const Vec3f direction = vector_of(scatterings_.direction);
   for (std::size_t i = 0; i < meter_->views.size(); ++i) {
     const Vec3f& view = meter_->views[i];
-    const float weight = phase.evaluate(path.direction, view) * meter_->weight_of_view(i);
+    const float weight = scattered.phase->evaluate(direction, view) * meter_->weight_of_view(i);
     if (weight == 0) continue;
     const uint32_t column = meter_->column_left(position, view, scene_.domain);
-    shadows_.add(static_cast<uint32_t>(slot), path, position, view, kOutside, path.place,
+    shadows_.add(scattered.slot, path, position, view, kOutside, path.place,
                  path.throughput * weight, false, meter_->cell_of_view(i, column));
   }
 }

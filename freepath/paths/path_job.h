@@ -12,9 +12,10 @@
 
 namespace freepath {
 
-/// Paths that a wavefront has in flight: their states and rays lie in a core's second cache, and
-/// there are enough to fill lanes to the last. Half as many, or twice, take up to a fifth longer.
-inline constexpr std::size_t kPathsInFlight = 1024;
+/// Paths that a wavefront has in flight: what scatterings touch of them and of their rays lies in a
+/// core's second cache, and there are enough to fill lanes to the last. Half as many take a
+/// twentieth longer, twice as many are no faster.
+inline constexpr std::size_t kPathsInFlight = 2048;
 
 /// A rectangle of work: `pixels` pixels of the film from `first_pixel` on (row-major), samples
 /// [first_sample, first_sample + samples) of each.

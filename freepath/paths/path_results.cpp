@@ -12,10 +12,13 @@ Spectrum to_spectrum(const Vec3f& rgb) { return {rgb.x, rgb.y, rgb.z}; }
 
 }  // namespace
 
-MediumWalkers::Origin PathWavefront::scatterer_of(const ScenePath& path, std::size_t component) {
-  const auto& origins = path.colors->walkers(path.medium).origins;
-  if (!origins.empty()) return origins[component];
-  return {path.medium, static_cast<uint32_t>(component)};
+MediumWalkers::Origin PathWavefront::scatterer_of(const ScenePath& path,
+                                                  std::size_t component) const {
+  // Those beyond the media of the scene are combinations.
+  if (static_cast<std::size_t>(path.medium) < scene_.media.size()) {
+    return {path.medium, static_cast<uint32_t>(component)};
+  }
+  return path.colors->walkers(path.medium).origins[component];
 }
 
 void PathWavefront::record_medium_event(ScenePath& path, float t,

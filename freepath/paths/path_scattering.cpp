@@ -28,6 +28,7 @@ void PathWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& dir
   path.direction = direction;
   path.ends_at_surface = false;
   path.surfaces_known = false;
+  path.is_in_rays = false;
   path.emission_share = 1;
   ++path.flights;
 }
@@ -196,6 +197,13 @@ void PathWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
   jobs_[path.job].counts.cut(path.channel < 0 ? sum / static_cast<float>(channels) : sum);
 }
 
+float PathWavefront::shadow_survival(const ScenePath& path, const Vec3f& position,
+                                     const LightDraw& light, const Channels& radiance) const {
+  if (setup_.shadow_guide == nullptr) return 1;
+  return setup_.shadow_guide->roulette(path.medium)
+      .survival(position, light.direction, brightness(path, radiance, false, light.distance));
+}
+
 void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) {
   ScenePath& path = paths_[slot];
   const PathShape& shape = scene_.shapes[hit.point.shape];
@@ -234,7 +242,7 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
           material.evaluate(hit.point, path.direction, light.direction, random, context);
       const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
       Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
-      const float survival = shadow_survival(path, position, light, radiance, false);
+      const float survival = shadow_survival(path, position, light, radiance);
       if (survival < 1) radiance *= random.uniform() < survival ? 1 / survival : 0.0F;
       if (!is_black(radiance)) {
         const Departure departure = depart(path, hit, light.direction);

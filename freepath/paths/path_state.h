@@ -12,48 +12,52 @@
 
 namespace freepath {
 
-/// A path, and the ray that it flies on. What stands together is used together, a cache line after
-/// the other: to send it on, in its channels, and where it turns.
+/// A path. Its first two cache lines are all that a flight between scatterings in a medium
+/// touches: thousands of paths are in flight, and most of their events are these.
 struct alignas(64) ScenePath {
-  Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
-  Vec3f direction{0};  ///< Of its ray, unit [world].
-  /// Length of its ray up to a side of the domain, or a plane where paths split [world].
-  float side = std::numeric_limits<float>::infinity();
+  const PathColors* colors = nullptr;
+  uint64_t lookups = 0;       ///< Look-ups of densities so far.
   MediumId medium = kVacuum;  ///< What the media around are together.
   int channel = -1;           ///< The one channel that it carries, or -1.
+  PlaceId place = 0;          ///< Which media are around: MediaPlaces.
   uint32_t pixel = 0;
   uint32_t sample_key = 0;  ///< Of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.
-  const PathColors* colors = nullptr;
+  uint32_t turned_in = 0;   ///< The flight with which its direction began.
+  uint32_t scatterings = 0;
+  /// With what density its direction was drawn [1/sr]; 0: it had no choice, or comes from the
+  /// camera.
+  float pdf = 0;
+  /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
+  float emission_share = 1;
+  uint8_t hero = 0;  ///< The channel that decides where channels part.
   bool surfaces_known = false;
   bool ends_at_surface = false;  ///< Once that is known.
   bool only_hero = false;
   bool is_coloured = false;  ///< It has met something that may tell wavelengths apart.
   bool is_dead = false;
-  uint8_t hero = 0;  ///< The channel that decides where channels part.
+  bool is_sent = false;     ///< Its next ray lies in a stream, or waits in vacuum.
+  bool is_in_rays = false;  ///< Its ray lies in a stream alone: `origin` and so on are of old.
 
   alignas(64) Channels throughput;
-  Channels density{1.0F};  ///< FlightStream::density of the flights so far.
   Channels radiance;
   /// The part of the radiance that is known in R, G, B: what a throughput without colour brings of
   /// lights, whose integral over all wavelengths is known.
   Channels rgb;
+  Channels density{1.0F};  ///< FlightStream::density of the flights so far.
 
+  Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
+  Vec3f direction{0};  ///< Of its ray, unit [world].
   /// Where the direction began: at the camera, a surface or a collision. Unlike `origin` it stays
   /// where it is when the ray crosses a boundary.
   Vec3f turned_at{0};
-  float pdf = 0;  ///< With what density [1/sr]; 0: it had no choice, or comes from the camera.
-  /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
-  float emission_share = 1;
-  uint32_t turned_in = 0;  ///< The flight with which its direction began.
-  uint32_t scatterings = 0;
-  PlaceId place = 0;    ///< Which media are around: MediaPlaces.
+  /// Length of its ray up to a side of the domain, or a plane where paths split [world].
+  float side = std::numeric_limits<float>::infinity();
   uint32_t job = 0;     ///< Of OpenJobs.
   uint32_t result = 0;  ///< Place of what it finds in OpenJobs::results.
-  uint64_t lookups = 0;
-  float distance = 0;  ///< Flown from the camera, until the first event [world].
-  uint32_t sides = 0;  ///< Passed so far.
-  uint32_t level = 0;  ///< Planes where paths split that lie above.
+  float distance = 0;   ///< Flown from the camera, until the first event [world].
+  uint32_t sides = 0;   ///< Passed so far.
+  uint32_t level = 0;   ///< Planes where paths split that lie above.
 
   /// The mean over the channels that it carries.
   float mean(const Channels& values) const {

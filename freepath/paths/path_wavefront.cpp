@@ -24,7 +24,9 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       meter_(setup.meter),
       places_(*setup.scene, *setup.factory),
       paths_(setup.slots),
-      batches_(setup.slots, true),
+      slots_(setup.slots),
+      flying_(setup.slots, true),
+      sent_(setup.slots, true),
       kernels_(setup.factory->scattering()),
       shadows_(*setup.scene, places_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
@@ -36,6 +38,7 @@ PathWavefront::PathWavefront(const PathSetup& setup)
     everything_->min -= rounding;
     everything_->max += rounding;
   }
+  set_only_light();
   is_balanced_ = scene_.white_balance == Imath::M33f();
   camera_place_ = places_.of(scene_.camera_media);
   for (uint32_t shape = 0; shape < scene_.shapes.size(); ++shape) {
@@ -53,9 +56,12 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   records_spectra_ = film.buckets().count > 0;
   window_ = film.window();
   active_ = next_path_ = paths_of_newest_ = 0;
+  std::iota(slots_.begin(), slots_.end(), uint32_t{0});  // in order, as memory likes to be read
+  sent_.clear();
+  sent_in_vacuum_.clear();
   has_more_jobs_ = true;
   while (true) {
-    while (active_ < setup_.slots && fill(active_, jobs, film)) ++active_;
+    while (active_ < setup_.slots && fill(slots_[active_], jobs, film)) ++active_;
     if (active_ == 0) return true;
     if (scope.stopped() || jobs.stop()) return false;
     fly();
@@ -113,10 +119,14 @@ bool PathWavefront::fill(std::size_t slot, const PathJobSource& jobs, Film& film
     ScenePath& path = paths_[slot];
     if (meter_ != nullptr) {
       start_light(next_path_++, path);
+      send(slot);
       return true;
     }
     start_path(next_path_++, path);
-    if (!misses_everything(path)) return true;
+    if (!misses_everything(path)) {
+      send(slot);
+      return true;
+    }
     escape(path);
     end_path(path, jobs, film);
   }
@@ -140,17 +150,24 @@ void PathWavefront::end_path(ScenePath& path, const PathJobSource& jobs, Film& f
 }
 
 void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
-  for (std::size_t slot = 0; slot < active_;) {
-    if (!paths_[slot].is_dead || take_branch(paths_[slot])) {
-      ++slot;
+  for (std::size_t i = 0; i < active_;) {
+    constexpr std::size_t kAhead = 8;
+    const ScenePath* const ahead = &paths_[slots_[std::min(i + kAhead, active_ - 1)]];
+    __builtin_prefetch(ahead);
+    if (scene_.surfaces) __builtin_prefetch(&ahead->origin);  // most are sent from here
+    const uint32_t slot = slots_[i];
+    ScenePath& path = paths_[slot];
+    if (!path.is_dead || take_branch(path)) {
+      if (!path.is_sent) send(slot);
+      ++i;
       continue;
     }
-    end_path(paths_[slot], jobs, film);
-    // Paths stay where they are, but for the last ones, which close ranks.
+    end_path(path, jobs, film);
+    // Paths stay where they are: streams of rays know them by their slots.
     if (fill(slot, jobs, film)) {
-      ++slot;
+      ++i;
     } else {
-      paths_[slot] = paths_[--active_];
+      std::swap(slots_[i], slots_[--active_]);
     }
   }
 }
@@ -260,37 +277,58 @@ void PathWavefront::find_surface(ScenePath& path) {
   if (hit) hit_of(path) = *hit;
 }
 
-void PathWavefront::fly() {
-  batches_.clear();
-  for (std::size_t slot = 0; slot < active_; ++slot) {
-    ScenePath& path = paths_[slot];
-    set_side(path);
-    if (needs_surfaces_first(path)) find_surface(path);
-    if (path.medium == kVacuum) {
-      end_flight(slot);
-      continue;
-    }
-    const Walker& walker = path.colors->walker(path.medium, path.channel);
-    auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(slot));
-    RayStream& rays = batch.rays;
-    set_ray(rays, i, path.origin, path.direction,
+void PathWavefront::send(std::size_t slot) {
+  ScenePath& path = paths_[slot];
+  path.is_sent = true;
+  set_side(path);
+  if (needs_surfaces_first(path)) find_surface(path);
+  if (path.medium == kVacuum) {
+    sent_in_vacuum_.push_back(static_cast<uint32_t>(slot));
+    return;
+  }
+  const Walker& walker = path.colors->walker(path.medium, path.channel);
+  write_ray(slot, walker, path.origin, path.direction,
             path.ends_at_surface ? hit_of(path).t : path.side);
-    rays.pixel[i] = path.pixel;
-    rays.sample[i] = path.sample_key;
-    rays.stream[i] = stream_number(StreamPurpose::kWalk, path.flights);
-    if (!rays.weighted()) continue;
-    for (int c = 0; c < walker.channels(); ++c) {
-      rays.weight[c][i] = path.throughput[c];
-      rays.density[c][i] = path.density[c];
-    }
+}
+
+void PathWavefront::write_ray(std::size_t slot, const Walker& walker, const Vec3f& origin,
+                              const Vec3f& direction, float end) {
+  const ScenePath& path = paths_[slot];
+  auto [batch, i] = sent_.add(walker, static_cast<uint32_t>(slot));
+  RayStream& rays = batch.rays;
+  set_ray(rays, i, origin, direction, end);
+  rays.pixel[i] = path.pixel;
+  rays.sample[i] = path.sample_key;
+  rays.stream[i] = stream_number(StreamPurpose::kWalk, path.flights);
+  if (!rays.weighted()) return;
+  for (int c = 0; c < walker.channels(); ++c) {
+    rays.weight[c][i] = path.throughput[c];
+    rays.density[c][i] = path.density[c];
   }
-  for (WalkBatches::Batch* const batch : batches_.finish()) {
+}
+
+void PathWavefront::fly() {
+  std::swap(flying_, sent_);
+  std::swap(in_vacuum_, sent_in_vacuum_);
+  sent_.clear();
+  sent_in_vacuum_.clear();
+  for (const uint32_t slot : in_vacuum_) {
+    paths_[slot].is_sent = false;
+    end_flight(slot);
+  }
+  for (WalkBatches::Batch* const batch : flying_.finish()) {
     batch->walker->free_paths(batch->rays, flights_, counts_.free_paths);
+    scatterer_ = {};
     for (std::size_t i = 0; i < batch->count; ++i) {
-      take_flight(batch->owners[i], *batch->walker, i, batch->rays.weighted());
+      // What is ahead lies in no near cache after the walk.
+      constexpr std::size_t kAhead = 6;
+      const ScenePath* const ahead = &paths_[batch->owners[std::min(i + kAhead, batch->count - 1)]];
+      __builtin_prefetch(ahead);
+      __builtin_prefetch(&ahead->throughput);
+      take_flight(*batch, i);
     }
+    scatter_in_media(*batch);
   }
-  scatter_in_media();
 }
 
 void PathWavefront::set_side(ScenePath& path) const {
@@ -328,12 +366,19 @@ void PathWavefront::end_flight(std::size_t slot) {
   }
 }
 
-void PathWavefront::take_flight(std::size_t slot, const Walker& walker, std::size_t i,
-                                bool weighted) {
+void PathWavefront::take_ray(ScenePath& path, const RayStream& rays, std::size_t i) {
+  if (!std::exchange(path.is_in_rays, false)) return;
+  path.origin = path.turned_at = {rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]};
+  path.direction = {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
+}
+
+void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) {
+  const uint32_t slot = batch.owners[i];
   ScenePath& path = paths_[slot];
+  path.is_sent = false;
   path.lookups += flights_.lookups[i];
-  const int channels = walker.channels();
-  if (weighted) {
+  if (batch.rays.weighted()) {
+    const int channels = batch.walker->channels();
     for (int c = 0; c < channels; ++c) {
       path.radiance[c] += flights_.emitted[c][i] * path.emission_share;
       path.throughput[c] = flights_.weight[c][i];
@@ -351,23 +396,22 @@ void PathWavefront::take_flight(std::size_t slot, const Walker& walker, std::siz
     path.is_dead = true;
     return;
   }
-  switch (flights_.event[i]) {
-    case Event::kAbsorb:
-      if (meter_ != nullptr) {
-        const Vec3f position = path.origin + path.direction * flights_.t[i];
-        deposit(path, meter_->cell(Flux::kAbsorbed, meter_->column(position)), path.throughput[0]);
-      } else if (path.scatterings == 0) {
-        record_medium_event(path, flights_.t[i], scatterer_of(path, flights_.component[i]));
-      }
-      path.is_dead = true;
-      return;
-    case Event::kScatter:
-      collide(slot, flights_.t[i], flights_.component[i]);
-      return;
-    case Event::kEscape:
-      break;
+  if (flights_.event[i] == Event::kScatter) {
+    collide(slot, batch, i);
+    return;
   }
-  end_flight(slot);
+  take_ray(path, batch.rays, i);
+  if (flights_.event[i] == Event::kEscape) {
+    end_flight(slot);
+    return;
+  }
+  path.is_dead = true;
+  if (meter_ != nullptr) {
+    const Vec3f position = path.origin + path.direction * flights_.t[i];
+    deposit(path, meter_->cell(Flux::kAbsorbed, meter_->column(position)), path.throughput[0]);
+  } else if (path.scatterings == 0) {
+    record_medium_event(path, flights_.t[i], scatterer_of(path, flights_.component[i]));
+  }
 }
 
 void PathWavefront::escape(ScenePath& path) {

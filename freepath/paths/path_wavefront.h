@@ -20,6 +20,7 @@
 #include "freepath/paths/shadow_tracer.h"
 #include "freepath/paths/walk_batches.h"
 #include "freepath/sensors/film.h"
+#include "freepath/transport/scattering_kernels.h"
 #include "freepath/transport/scattering_stream.h"
 
 namespace freepath {
@@ -104,13 +105,20 @@ class PathWavefront {
   const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
     return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
   }
-  /// Sends all paths on: those in vacuum at once, others by their walkers.
+  /// Puts the ray of a path among those that fly next.
+  void send(std::size_t slot);
+  /// Writes the ray of a path in a medium into the stream of its walker.
+  void write_ray(std::size_t slot, const Walker& walker, const Vec3f& origin,
+                 const Vec3f& direction, float end);
+  /// Flies all rays that were sent: those in vacuum are at their end, others are walked.
   void fly();
   /// Where no collision has ended a ray.
   void end_flight(std::size_t slot);
   void set_side(ScenePath& path) const;
   void pass_side(ScenePath& path);
-  void take_flight(std::size_t slot, const Walker& walker, std::size_t i, bool weighted);
+  void take_flight(const WalkBatches::Batch& batch, std::size_t i);
+  /// Takes the ray of a path back from a stream, if it lies there alone.
+  static void take_ray(ScenePath& path, const RayStream& rays, std::size_t i);
   /// Whether the surface at which a ray ends has to be known before it flies.
   bool needs_surfaces_first(const ScenePath& path) const;
   void find_surface(ScenePath& path);
@@ -160,24 +168,43 @@ class PathWavefront {
   /// Whether a path goes on at a surface as if there were none.
   bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
   /// Puts a path that a medium scatters into the queue for it.
-  void collide(std::size_t slot, float t, std::size_t component);
+  /// @param i of its ray and its flight
+  void collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i);
+  /// Finds out how a component of the medium that a path is in scatters.
+  void set_scatterer(const ScenePath& path, std::size_t component);
+  /// Position where a flight has ended [world, relative to the scene's origin].
+  Vec3f position_of(const RayStream& rays, std::size_t i) const;
   /// Scatters those in the queue: draws lights for them and where they go on.
-  void scatter_in_media();
+  void scatter_in_media(const WalkBatches::Batch& batch);
+  /// Writes what all draws of lights have in common, once and for all, if they are the same.
+  void set_only_light();
+  /// Takes that light for a scattering in the queue.
+  void take_only_light(std::size_t scattering, const ScenePath& path);
   /// Draws the light for a scattering in the queue.
-  void draw_light_of(std::size_t scattering);
-  /// With what probability to cast a shadow ray that brings this if nothing is in between.
+  void draw_light_of(std::size_t scattering, const ScenePath& path);
+  /// Says how bright a radiance is to the picture: the mean of the channels, in units of white.
+  /// Huge where the shadow ray to a light at that distance does not play.
+  float brightness(const ScenePath& path, const Channels& radiance, bool in_rgb,
+                   float distance) const;
+  /// With what probability to cast a shadow ray from a surface that brings this if nothing is in
+  /// between.
   float shadow_survival(const ScenePath& path, const Vec3f& position, const LightDraw& light,
-                        const Channels& radiance, bool in_rgb) const;
+                        const Channels& radiance) const;
   /// Casts a ray towards that light.
   void cast_shadow(std::size_t scattering);
+  /// Draws the next direction of a scattering whose phase function the lanes don't know.
+  void draw_direction_of(std::size_t scattering);
+  /// Turns a path into the direction drawn for a scattering in the queue.
+  void turn_scattered(std::size_t scattering, ScenePath& path);
+  /// Writes the rays of those that only the next walk needs into its stream.
+  void send_scattered(const Walker& walker);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
     if (meter_ != nullptr || scene_.domain) return nullptr;
     const bool wanted = setup_.samples_emission.value_or(!setup_.factory->glow_is_spread(medium));
     return wanted ? setup_.factory->guide(medium) : nullptr;
   }
-  void draw_emission(std::size_t slot, const EmissionGuide& guide, const Vec3f& position,
-                     const PhaseFunction& phase, RandomStream& random);
+  void draw_emission(std::size_t scattering, const EmissionGuide& guide);
   /// Whether the limit of scatterings ends a path.
   bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
   /// @param albedo of what would scatter it
@@ -190,7 +217,7 @@ class PathWavefront {
   /// The same in a new direction.
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
   /// The medium of the scene, and its component, in which a collision takes place.
-  static MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component);
+  MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component) const;
   /// Records the first event of a path.
   /// @param weight its probability over that with which it came about, in each channel
   void record_event(ScenePath& path, float t, const Channels& weight, const Channels& albedo,
@@ -207,7 +234,7 @@ class PathWavefront {
   void leave_meter(ScenePath& path);
   void arrive_at_ground(const ScenePath& path, const Vec3f& position);
   void absorb_part(const ScenePath& path, const Vec3f& position, std::size_t component);
-  void show_collision(std::size_t slot, const Vec3f& position, const PhaseFunction& phase);
+  void show_collision(std::size_t scattering);
   void show_surface(std::size_t slot, const SurfaceHit& hit, const Material& material,
                     RandomStream& random, const SurfaceContext& context);
   void pass_plane(std::size_t slot);
@@ -230,22 +257,36 @@ class PathWavefront {
   bool has_alpha_ = false;                                 // whether a shape of the scene has
   std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
   std::vector<TiedSurface> ties_;                          // of the surface that a path meets
-  std::vector<ScenePath> paths_;
-  std::vector<SurfaceHit> hits_;  // of the paths, if there are surfaces
-  std::size_t active_ = 0;
-  WalkBatches batches_;
+  std::vector<ScenePath> paths_;                           // in slots
+  std::vector<SurfaceHit> hits_;                           // of the paths, if there are surfaces
+  std::vector<uint32_t> slots_;  // those of the paths in flight, then the others
+  std::size_t active_ = 0;       // paths in flight
+  // Rays in flight, and those of the next round, which scatterings write.
+  WalkBatches flying_, sent_;
+  std::vector<uint32_t> in_vacuum_, sent_in_vacuum_;  // slots of those that need no walk
   FlightStream flights_;
   /// A path that a medium scatters, of the same number in scatterings_.
   struct Scattering {
-    std::size_t slot = 0;
-    Vec3f position{0};
-    const PhaseFunction* phase = nullptr;
+    uint32_t slot = 0;
     bool in_rgb = false;  ///< Whether the light is.
-    LightDraw light;
+    const PhaseFunction* phase = nullptr;
+    ShadowEnd end;      ///< Of the shadow ray.
+    Channels radiance;  ///< What the light brings unshadowed, times the density of the draw.
   };
+  /// How the component scatters that the scattering before was of.
+  struct Scatterer {
+    std::size_t component = SIZE_MAX;
+    const PhaseFunction* phase = nullptr;
+    float g = 0;            ///< ScatteringStream::g
+    uint32_t is_given = 0;  ///< ScatteringStream::is_given
+  };
+  Scatterer scatterer_;
+  const SceneLights::Distant* only_light_ = nullptr;  // SceneLights::only_light()
   const ScatteringKernels& kernels_;
   ScatteringStream scatterings_;
   std::array<Scattering, ScatteringStream::kCapacity> scattered_;
+  std::array<uint32_t, ScatteringStream::kCapacity> going_on_{};  // see send_scattered()
+  std::size_t going_on_count_ = 0;
   ShadowTracer shadows_;
   EmissionTracer emissions_;
   OpenJobs jobs_;

@@ -16,15 +16,11 @@ namespace {
 /// Of what an isotropic scattering brings: fainter rays play. Half of it gives little, twice as
 /// much costs noise where few scatterings bring most of the light.
 constexpr float kThreshold = 0.2F;
-/// Rays are cast with this probability at least, so that none counts for much more than others.
-constexpr float kLeastSurvival = 0.1F;
 
 /// Draws from which the dominant direction is found.
 constexpr uint32_t kDraws = 256;
 /// Steps of a lattice whose points fill a cube evenly: inverse powers of the root of x⁴ = x + 1.
 constexpr std::array<double, 2> kLattice{0.8191725133961645, 0.6710436067037893};
-/// Directions this close to the dominant one count as that.
-constexpr float kSameDirection = 0.985F;
 /// A direction is dominant if so much of the light comes from there.
 constexpr float kDominantShare = 0.25F;
 
@@ -43,13 +39,13 @@ ShadowGuide::ShadowGuide(const ColorFactory& factory, uint64_t seed) {
   const PathScene& scene = factory.scene();
   if (!scene.lights->is_drawn()) return;
   const double scattered = scene.lights->fluence() / (4 * std::numbers::pi);
-  least_ = kThreshold * static_cast<float>(scattered);
+  elsewhere_.least = kThreshold * static_cast<float>(scattered);
   const std::vector<SceneMedium>& media = scene.media;
-  if (!(least_ > 0) || media.empty() || media.size() > kMostMedia || scene.domain) return;
+  if (!(elsewhere_.least > 0) || media.empty() || media.size() > kMostMedia || scene.domain) return;
   find_dominant(scene);
   if (!dominant_) return;
   for (std::size_t i = 0; i < media.size(); ++i) {
-    cells_.push_back(tabulate(scene, factory.bound_in_rgb(i), media[i].bounds(), seed));
+    media_.push_back(tabulate(scene, factory.bound_in_rgb(i), media[i].bounds(), seed));
   }
 }
 
@@ -80,7 +76,8 @@ void ShadowGuide::find_dominant(const PathScene& scene) {
   for (const Draw& candidate : draws) {
     float around = 0;
     for (const Draw& other : draws) {
-      if (candidate.direction.dot(other.direction) >= kSameDirection) around += other.power;
+      if (candidate.direction.dot(other.direction) >= ShadowRoulette::kSameDirection)
+        around += other.power;
     }
     if (around <= largest) continue;
     largest = around;
@@ -89,12 +86,13 @@ void ShadowGuide::find_dominant(const PathScene& scene) {
   if (largest < kDominantShare * sum) dominant_.reset();
 }
 
-ShadowGuide::Cells ShadowGuide::tabulate(const PathScene& scene, const BoundMedium& bound,
-                                         const Box3d& bounds, uint64_t seed) const {
-  Cells cells;
+ShadowRoulette ShadowGuide::tabulate(const PathScene& scene, const BoundMedium& bound,
+                                     const Box3d& bounds, uint64_t seed) {
+  ShadowRoulette cells = elsewhere_;
   const Vec3d size = bounds.size();
   const double edge = std::max({size.x, size.y, size.z}) / kCells;
   if (!(edge > 0) || !std::isfinite(edge)) return cells;
+  cells.dominant = *dominant_;
   cells.corner = Vec3f(bounds.min - scene.origin);
   for (int axis = 0; axis < 3; ++axis) {
     cells.counts[axis] = std::clamp(static_cast<int>(std::ceil(size[axis] / edge)), 1, kCells);
@@ -117,7 +115,7 @@ ShadowGuide::Cells ShadowGuide::tabulate(const PathScene& scene, const BoundMedi
     rays.stream[i] = kWalkStream;
   }
   // Of channels that differ, that which is let through best.
-  cells.roots.resize(count);
+  std::vector<float>& roots = roots_.emplace_back(count);
   const int channels = bound.channels.has_grey_extinction() ? 1 : bound.channels.count;
   FlightStream flights;
   WalkStatistics statistics;
@@ -129,29 +127,11 @@ ShadowGuide::Cells ShadowGuide::tabulate(const PathScene& scene, const BoundMedi
       float sum = 0;
       for (uint32_t n = 0; n < kRaysOfCell; ++n) sum += flights.weight[0][cell + n * count];
       const float mean = std::max(sum, 0.0F) / kRaysOfCell;
-      cells.roots[cell] = std::max(cells.roots[cell], std::sqrt(mean));
+      roots[cell] = std::max(roots[cell], std::sqrt(mean));
     }
   }
+  cells.roots = roots.data();
   return cells;
-}
-
-float ShadowGuide::survival_of_faint(MediumId medium, const Vec3f& position, const Vec3f& direction,
-                                     float brightness) const {
-  float expected = brightness;
-  const auto number = static_cast<std::size_t>(medium);
-  if (number < cells_.size() && !cells_[number].roots.empty() &&
-      direction.dot(*dominant_) >= kSameDirection) {
-    const Cells& cells = cells_[number];
-    std::size_t place = 0;
-    for (int axis = 2; axis >= 0; --axis) {
-      const float at = (position[axis] - cells.corner[axis]) * cells.per_cell[axis];
-      const int cell =
-          static_cast<int>(std::clamp(at, 0.0F, static_cast<float>(cells.counts[axis] - 1)));
-      place = place * cells.counts[axis] + cell;
-    }
-    expected *= cells.roots[place];
-  }
-  return std::clamp(expected / least_, kLeastSurvival, 1.0F);
 }
 
 }  // namespace freepath

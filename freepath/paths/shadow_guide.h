@@ -1,6 +1,7 @@
 #pragma once
 /// @file Which shadow rays are worth their time.
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "freepath/base/vector.h"
 #include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/transport/shadow_roulette.h"
 
 namespace freepath {
 
@@ -23,42 +25,34 @@ class ShadowGuide {
  public:
   /// @param seed of the estimates of transmittance
   ShadowGuide(const ColorFactory& factory, uint64_t seed);
+  ShadowGuide(const ShadowGuide&) = delete;  // its media point at its tables
+  ShadowGuide& operator=(const ShadowGuide&) = delete;
 
-  /// The probability with which to cast a ray, (0, 1]; if it is cast, what it brings is to be
-  /// divided by that.
+  /// Whether the shadow ray of a scattering plays, and is not cast in any case.
   /// @param scatterings of the path so far, this one included
-  /// @param medium,position where it begins [world, relative to the scene's origin]
-  /// @param direction towards the light
-  /// @param brightness of what it would bring unshadowed: mean of the channels, in units of white
-  float survival(uint32_t scatterings, MediumId medium, const Vec3f& position,
-                 const Vec3f& direction, float brightness) const {
-    if (scatterings < kFirstScattering || brightness >= least_) return 1;
-    return survival_of_faint(medium, position, direction, brightness);
+  /// @param distance to the light
+  static bool plays(uint32_t scatterings, float distance) {
+    return scatterings >= kFirstScattering && !std::isfinite(distance);
+  }
+  /// How rays from scatterings in a medium play.
+  const ShadowRoulette& roulette(MediumId medium) const {
+    const auto number = static_cast<std::size_t>(medium);
+    return number < media_.size() ? media_[number] : elsewhere_;
   }
 
  private:
   static constexpr uint32_t kFirstScattering = 2;
 
-  /// Transmittances towards the dominant direction, of the middles of cells in the bounds of a
-  /// medium.
-  struct Cells {
-    Vec3f corner{0};
-    Vec3f per_cell{0};  // cells in a unit of length
-    Vec3i counts{0};
-    std::vector<float> roots;  // of the transmittances, x fastest
-  };
-
-  float survival_of_faint(MediumId medium, const Vec3f& position, const Vec3f& direction,
-                          float brightness) const;
   void find_dominant(const PathScene& scene);
-  Cells tabulate(const PathScene& scene, const BoundMedium& bound, const Box3d& bounds,
-                 uint64_t seed) const;
+  ShadowRoulette tabulate(const PathScene& scene, const BoundMedium& bound, const Box3d& bounds,
+                          uint64_t seed);
 
-  /// Luminance of what the lights from outside bring by an isotropic scattering, times the
-  /// threshold.
-  float least_ = 0;
+  /// Without transmittances. Its threshold is the luminance of what the lights from outside bring
+  /// by an isotropic scattering, times a constant.
+  ShadowRoulette elsewhere_;
   std::optional<Vec3f> dominant_;
-  std::vector<Cells> cells_;  // of media, if there is a dominant direction
+  std::vector<ShadowRoulette> media_;      // if there is a dominant direction
+  std::vector<std::vector<float>> roots_;  // of those media, which point at them
 };
 
 }  // namespace freepath

@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace freepath {
+namespace {
+
+/// Rays to make room for at first: where there are many walkers, each has few of them.
+constexpr std::size_t kFirstRoom = 1024;
+
+}  // namespace
 
 void WalkBatches::clear() {
   for (std::size_t i = 0; i < used_; ++i) batches_[i].count = 0;
@@ -16,7 +22,7 @@ uint32_t WalkBatches::find(const Walker& walker) {
   if (used_ == batches_.size()) batches_.emplace_back();
   Batch& fresh = batches_[used_++];
   fresh.walker = &walker;
-  resize(fresh, std::max(capacity_, fresh.owners.size()));
+  resize(fresh, std::max(std::min(capacity_, kFirstRoom), fresh.owners.size()));
   fresh.rays.set_weighted(weighted_ && walker.channels() > 1);
   return number;
 }

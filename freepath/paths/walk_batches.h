@@ -22,7 +22,7 @@ class WalkBatches {
     std::size_t count = 0;         ///< Of rays.
   };
 
-  /// @param capacity rays to make room for at once; there may be more
+  /// @param capacity rays that there will be, or more
   /// @param weighted whether rays of several channels bring weights along
   WalkBatches(std::size_t capacity, bool weighted) : capacity_(capacity), weighted_(weighted) {}
 
@@ -39,6 +39,16 @@ class WalkBatches {
     const std::size_t slot = batch.count++;
     if (slot == batch.owners.size()) resize(batch, 2 * slot);
     batch.owners[slot] = owner;
+    return {batch, slot};
+  }
+
+  /// Where to put the next rays of a walker, one behind the other; the caller writes their owners.
+  Place add_all(const Walker& walker, std::size_t count) {
+    if (last_ >= used_ || batches_[last_].walker != &walker) last_ = number_of(walker);
+    Batch& batch = batches_[last_];
+    const std::size_t slot = batch.count;
+    batch.count += count;
+    if (batch.count > batch.owners.size()) resize(batch, 2 * batch.count);
     return {batch, slot};
   }
 

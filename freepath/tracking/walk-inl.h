@@ -60,9 +60,12 @@ class Walk {
         dealer_(tracker, segments, medium, seed, rays, entry, flights) {}
 
   void run() {
-    HWY_ALIGN_MAX Team teams[2] = {};
+    HWY_ALIGN_MAX Team teams[2];
     for (Team& team : teams) {
-      for (Group& group : team) dealer_.refill(group);
+      for (Group& group : team) {
+        group.clear(medium_);
+        dealer_.refill(group);
+      }
     }
     // While one team computes, the memory that the other has asked for arrives.
     bool alive = true;

@@ -7,6 +7,8 @@
 #define FREEPATH_TRACKING_WALK_GROUP_INL_H_
 #endif
 
+#include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "freepath/base/lanes-inl.h"
@@ -57,6 +59,14 @@ struct WalkGroup {
   // Last, since most media use but the first of their many components: all else stands together.
   typename Medium::State lookup;
   Control control;
+
+  /// Empties all lanes. What no lane of this medium reads is left as it is: look-ups of all the
+  /// components that a medium may have would take a part of the nearest cache.
+  HWY_INLINE void clear(const Medium& medium) {
+    std::memset(static_cast<void*>(this), 0, offsetof(WalkGroup, lookup));
+    medium.clear(lookup);
+    if constexpr (Tracker::kControl) medium.clear(control);
+  }
 
   HWY_INLINE void load_rows(VecF (&values)[kStoredRows]) const {
     for (int row = 0; row < kRows; ++row) values[row] = hn::Load(kFloat, rows[row]);

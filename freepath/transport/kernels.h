@@ -11,7 +11,7 @@
 #include "freepath/tracking/method.h"
 #include "freepath/tracking/streams.h"
 #include "freepath/tracking/walk_modes.h"
-#include "freepath/transport/scattering_stream.h"
+#include "freepath/transport/scattering_kernels.h"
 
 namespace freepath {
 

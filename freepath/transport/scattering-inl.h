@@ -7,19 +7,55 @@
 #define FREEPATH_TRANSPORT_SCATTERING_INL_H_
 #endif
 
+#include <vector>
+
 #include "freepath/media/phase/henyey_greenstein-inl.h"
 #include "freepath/tracking/random-inl.h"
+#include "freepath/tracking/streams.h"
+#include "freepath/transport/scattering_kernels.h"
 #include "freepath/transport/scattering_stream.h"
+#include "freepath/transport/shadow_roulette.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
-inline void draw_scattering_numbers(ScatteringStream& scatterings, uint64_t seed) {
+inline void gather_scatterings(const RayStream& rays, const FlightStream& flights,
+                               ScatteringStream& scatterings) {
+  const auto gather = [](const auto& values, VecI ray) {
+    return hn::GatherIndex(kFloat, values.data(), ray);
+  };
+  const auto gather_bits = [](const std::vector<uint32_t>& values, VecI ray) {
+    const auto* const bits = reinterpret_cast<const int32_t*>(values.data());
+    return hn::BitCast(kUint, hn::GatherIndex(kInt, bits, ray));
+  };
+  constexpr uint32_t kFromWalk =
+      stream_number(StreamPurpose::kScatter, 0) - stream_number(StreamPurpose::kWalk, 0);
+  const VecI count = hn::Set(kInt, static_cast<int32_t>(scatterings.count));
+  for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
+    // Lanes beyond the last one read the first ray.
+    const MaskI some = hn::Lt(hn::Iota(kInt, static_cast<int32_t>(i)), count);
+    const VecI ray =
+        hn::IfThenElseZero(some, hn::BitCast(kInt, hn::Load(kUint, &scatterings.ray[i])));
+    const VecF t = gather(flights.t, ray);
+    for (int axis = 0; axis < 3; ++axis) {
+      const VecF direction = gather(rays.direction[axis], ray);
+      hn::Store(direction, kFloat, &scatterings.direction[axis][i]);
+      hn::Store(mul_add(direction, t, gather(rays.origin[axis], ray)), kFloat,
+                &scatterings.position[axis][i]);
+    }
+    hn::Store(gather_bits(rays.pixel, ray), kUint, &scatterings.pixel[i]);
+    hn::Store(gather_bits(rays.sample, ray), kUint, &scatterings.sample[i]);
+    hn::Store(hn::Add(gather_bits(rays.stream, ray), hn::Set(kUint, kFromWalk)), kUint,
+              &scatterings.stream[i]);
+  }
+}
+
+inline void draw_scattering_numbers(ScatteringStream& scatterings, uint64_t seed, uint32_t blocks) {
   for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
     const VecU stream = hn::Load(kUint, &scatterings.stream[i]);
     const VecU sample = hn::Load(kUint, &scatterings.sample[i]);
     const VecU pixel = hn::Load(kUint, &scatterings.pixel[i]);
-    for (uint32_t n = 0; n < kScatteringBlocks; ++n) {
+    for (uint32_t n = 0; n < blocks; ++n) {
       const VecU block = hn::Set(kUint, n);
       const RandomWords random = philox_lanes(block, stream, sample, pixel, seed);
       for (uint32_t w = 0; w < 4 && 4 * n + w < kScatteringNumbers; ++w) {
@@ -33,16 +69,69 @@ inline void draw_scattering_numbers(ScatteringStream& scatterings, uint64_t seed
   }
 }
 
-inline void scatter_lanes(ScatteringStream& scatterings) {
-  const auto load = [](const std::array<ScatteringStream::Row<float>, 3>& rows, std::size_t i) {
-    return VectorLanes{hn::Load(kFloat, &rows[0][i]), hn::Load(kFloat, &rows[1][i]),
-                       hn::Load(kFloat, &rows[2][i])};
-  };
+/// Rows of vectors from lane i on.
+HWY_INLINE VectorLanes vectors_at(const std::array<ScatteringStream::Row<float>, 3>& rows,
+                                  std::size_t i) {
+  return {hn::Load(kFloat, &rows[0][i]), hn::Load(kFloat, &rows[1][i]),
+          hn::Load(kFloat, &rows[2][i])};
+}
+
+/// Number of the cell along an axis, a whole number.
+HWY_INLINE VecF cell_along(VecF position, float corner, float per_cell, int count) {
+  const VecF at = hn::Mul(hn::Sub(position, set(corner)), set(per_cell));
+  const VecF last = set(static_cast<float>(count - 1));
+  return hn::Floor(hn::Min(hn::Max(at, hn::Zero(kFloat)), last));
+}
+
+/// ShadowRoulette::survival(), lane by lane.
+HWY_INLINE VecF survival_lanes(const ShadowRoulette& roulette, const VectorLanes& position,
+                               const VectorLanes& direction, VecF brightness) {
+  const VecF one = set(1.0F);
+  const MaskF faint = hn::Lt(brightness, set(roulette.least));
+  if (hn::AllFalse(kFloat, faint)) return one;
+  VecF expected = brightness;
+  if (roulette.roots != nullptr) {
+    const VecF cosine = hn::Add(hn::Add(hn::Mul(direction.x, set(roulette.dominant.x)),
+                                        hn::Mul(direction.y, set(roulette.dominant.y))),
+                                hn::Mul(direction.z, set(roulette.dominant.z)));
+    const MaskF same = hn::And(faint, hn::Ge(cosine, set(ShadowRoulette::kSameDirection)));
+    const Vec3i& counts = roulette.counts;
+    const auto along = [&](VecF at, int axis) {
+      return small_to_int(
+          cell_along(at, roulette.corner[axis], roulette.per_cell[axis], counts[axis]));
+    };
+    VecI cell = along(position.z, 2);
+    cell = hn::Add(hn::Mul(cell, hn::Set(kInt, counts.y)), along(position.y, 1));
+    cell = hn::Add(hn::Mul(cell, hn::Set(kInt, counts.x)), along(position.x, 0));
+    const VecF root =
+        hn::GatherIndex(kFloat, roulette.roots, hn::IfThenElseZero(int_mask(same), cell));
+    expected = hn::Mul(expected, hn::IfThenElse(same, root, one));
+  }
+  const VecF wanted = hn::Div(expected, set(roulette.least));
+  const VecF held = hn::Min(hn::Max(wanted, set(ShadowRoulette::kLeastSurvival)), one);
+  return hn::IfThenElse(faint, held, one);
+}
+
+inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& roulette) {
   for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
     const HenyeyGreensteinLanes phase(hn::Load(kFloat, &scatterings.g[i]));
-    const VectorLanes before = load(scatterings.direction, i);
-    hn::Store(phase.evaluate(before, load(scatterings.to_light, i)), kFloat,
-              &scatterings.light_value[i]);
+    const VectorLanes before = vectors_at(scatterings.direction, i);
+    const VectorLanes to_light = vectors_at(scatterings.to_light, i);
+    const MaskU given = hn::Ne(hn::Load(kUint, &scatterings.is_given[i]), hn::Zero(kUint));
+    const VecF value =
+        hn::IfThenElse(hn::RebindMask(kFloat, given), hn::Load(kFloat, &scatterings.light_value[i]),
+                       phase.evaluate(before, to_light));
+    hn::Store(value, kFloat, &scatterings.light_value[i]);
+    // The phase function is its own density.
+    const VecF light_pdf = hn::Load(kFloat, &scatterings.light_pdf[i]);
+    const VecF chance = hn::Mul(hn::Load(kFloat, &scatterings.light_found[i]), value);
+    const MaskF drawn = hn::Gt(light_pdf, hn::Zero(kFloat));
+    const VecF density = hn::IfThenElse(drawn, hn::Add(light_pdf, chance), set(1.0F));
+    const VecF share = hn::IfThenElseZero(drawn, hn::Div(value, density));
+    hn::Store(share, kFloat, &scatterings.light_share[i]);
+    const VecF brightness = hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share);
+    hn::Store(survival_lanes(roulette, vectors_at(scatterings.position, i), to_light, brightness),
+              kFloat, &scatterings.shadow_survival[i]);
     VecF pdf;
     const VectorLanes after =
         phase.sample(before, hn::Load(kFloat, &scatterings.numbers[kPhaseNumber][i]),
@@ -55,7 +144,7 @@ inline void scatter_lanes(ScatteringStream& scatterings) {
 }
 
 inline ScatteringKernels make_scattering_kernels() {
-  return {&draw_scattering_numbers, &scatter_lanes};
+  return {&gather_scatterings, &draw_scattering_numbers, &scatter_lanes};
 }
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -10,40 +10,45 @@ namespace freepath {
 /// Numbers that a scattering draws, in this order; streams of one path have more behind them.
 enum ScatteringNumber : uint32_t {
   kRouletteNumber = 0,
-  kLightNumber = 1,   ///< Three.
-  kPhaseNumber = 4,   ///< Two.
-  kShadowNumber = 6,  ///< Whether to cast a shadow ray.
+  kPhaseNumber = 1,   ///< Two.
+  kShadowNumber = 3,  ///< Whether to cast a shadow ray.
+  kLightNumber = 4,   ///< Three; only where lights differ.
   kScatteringNumbers = 7,
 };
-/// Blocks of four random words that these take.
+/// Blocks of four random words that these take, with those of the light and without.
 inline constexpr uint32_t kScatteringBlocks = 2;
+inline constexpr uint32_t kBlocksWithoutLight = 1;
 
-/// Scatterings in slots [0, count). What has no value yet is finite, so that lanes may read it.
+/// Scatterings in slots [0, count), of the rays of one walk. What has no value yet is finite, so
+/// that lanes may read it.
 struct ScatteringStream {
   /// As many as the nearest cache holds with their paths; a multiple of the lanes of any target.
-  static constexpr std::size_t kCapacity = 128;
+  static constexpr std::size_t kCapacity = 64;
   template <class T>
   using Row = std::array<T, kCapacity>;
 
   std::size_t count = 0;
+  /// Slot of the ray and its flight in the streams of the walk.
+  alignas(64) Row<uint32_t> ray{};
   // Where their random numbers stand.
-  alignas(64) Row<uint32_t> pixel{}, sample{}, stream{};
+  Row<uint32_t> pixel{}, sample{}, stream{};
   std::array<Row<float>, kScatteringNumbers> numbers{};
   Row<float> g{};                         ///< Mean cosine of the phase function.
+  std::array<Row<float>, 3> position{};   ///< [world, relative to the scene's origin]
   std::array<Row<float>, 3> direction{};  ///< Of travel, before [world].
-  std::array<Row<float>, 3> to_light{};   ///< Towards the light that was drawn [world].
-  Row<float> light_value{};               ///< Phase function towards it [1/sr].
-  std::array<Row<float>, 3> next{};       ///< Direction of travel, after [world].
-  Row<float> next_pdf{};                  ///< Of that [1/sr].
-};
-
-/// Scatterings as compiled for one target; the same bits on all of them.
-struct ScatteringKernels {
-  /// Draws the numbers of scatterings: uniform in (0,1), as RandomStream draws them.
-  void (*draw_numbers)(ScatteringStream& scatterings, uint64_t seed) = nullptr;
-  /// Evaluates the phase function of Henyey and Greenstein towards the lights, and draws next
-  /// directions from it, by the numbers that were drawn.
-  void (*scatter)(ScatteringStream& scatterings) = nullptr;
+  // Of the light that was drawn, where one was.
+  std::array<Row<float>, 3> to_light{};  ///< Direction towards it [world].
+  Row<float> light_pdf{};                ///< LightDraw::pdf.
+  Row<float> light_found{};  ///< 1 where paths find it by chance too, else 0: multiple importance.
+  /// What it would bring unshadowed if the phase function were 1 and no path found it; see
+  /// ShadowRoulette::least. Huge where its shadow ray does not play.
+  Row<float> brightness{};
+  Row<uint32_t> is_given{};      ///< Not 0 where light_value is given: the function is not of `g`.
+  Row<float> light_value{};      ///< Phase function towards it [1/sr].
+  Row<float> light_share{};      ///< What its radiance counts for; 0 without a draw.
+  Row<float> shadow_survival{};  ///< With what probability to cast a shadow ray, (0, 1].
+  std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
+  Row<float> next_pdf{};             ///< Of that [1/sr].
 };
 
 }  // namespace freepath

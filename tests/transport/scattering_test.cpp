@@ -4,15 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "freepath/base/distributions.h"
 #include "freepath/base/random.h"
 #include "freepath/base/turn.h"
 #include "freepath/media/phase/henyey_greenstein.h"
 #include "freepath/transport/kernels.h"
+#include "freepath/transport/shadow_roulette.h"
 
 namespace freepath {
 namespace {
@@ -31,25 +34,58 @@ ScatteringStream make_scatterings(uint32_t first, std::size_t count) {
     scatterings.stream[i] = i * 4 + 2;
     scatterings.g[i] = kCosines[i % std::size(kCosines)];
     const Vec3f before = i == 0 ? Vec3f(0, 0, -1) : sample_sphere(random.uniform(), 0.3F);
-    const Vec3f light = sample_sphere(random.uniform(), random.uniform());
+    const Vec3f light =
+        i % 4 == 0 ? Vec3f(0, 0.6F, 0.8F) : sample_sphere(random.uniform(), random.uniform());
     for (int axis = 0; axis < 3; ++axis) {
+      scatterings.position[axis][i] = 5 * random.uniform() - 2;
       scatterings.direction[axis][i] = before[axis];
       scatterings.to_light[axis][i] = light[axis];
     }
+    scatterings.light_pdf[i] = i % 5 == 0 ? 0 : 3 * random.uniform();
+    scatterings.light_found[i] = i % 3 == 0 ? 0.0F : 1.0F;
+    scatterings.brightness[i] = i % 7 == 0 ? 1e30F : 2 * random.uniform();
+    scatterings.is_given[i] = i % 11 == 0 ? 1 : 0;
+    scatterings.light_value[i] = i % 11 == 0 ? random.uniform() : -1;
   }
   return scatterings;
 }
+
+/// Cells of 3 x 2 x 4 around most of the scatterings, and their transmittances.
+struct Cells {
+  std::vector<float> roots;
+  ShadowRoulette roulette;
+
+  explicit Cells(float least) {
+    RandomStream random(kSeed, 0, 0, 1);
+    for (int i = 0; i < 24; ++i) roots.push_back(random.uniform());
+    roulette = {.least = least,
+                .dominant = {0, 0.6F, 0.8F},
+                .corner = {-1, -1, -1},
+                .per_cell = {1, 0.7F, 1.3F},
+                .counts = {3, 2, 4},
+                .roots = roots.data()};
+  }
+};
 
 Vec3f vector_at(const std::array<ScatteringStream::Row<float>, 3>& rows, std::size_t i) {
   return {rows[0][i], rows[1][i], rows[2][i]};
 }
 
-void expect_scalar(const ScatteringStream& lanes, std::size_t i) {
+void expect_scalar(const ScatteringStream& lanes, const ScatteringStream& before_lanes,
+                   const ShadowRoulette& roulette, std::size_t i) {
   RandomStream random(kSeed, lanes.pixel[i], lanes.sample[i], lanes.stream[i]);
   for (const auto& numbers : lanes.numbers) ASSERT_EQ(numbers[i], random.uniform());
   const HenyeyGreenstein phase(lanes.g[i]);
   const Vec3f before = vector_at(lanes.direction, i);
-  ASSERT_EQ(lanes.light_value[i], phase.evaluate(before, vector_at(lanes.to_light, i)));
+  const Vec3f light = vector_at(lanes.to_light, i);
+  const float value =
+      lanes.is_given[i] != 0 ? before_lanes.light_value[i] : phase.evaluate(before, light);
+  ASSERT_EQ(lanes.light_value[i], value);
+  const float pdf = lanes.light_pdf[i];
+  const float share = pdf > 0 ? value / (pdf + lanes.light_found[i] * value) : 0;
+  ASSERT_EQ(lanes.light_share[i], share);
+  ASSERT_EQ(lanes.shadow_survival[i],
+            roulette.survival(vector_at(lanes.position, i), light, lanes.brightness[i] * share));
   const PhaseSample next =
       phase.sample(before, lanes.numbers[kPhaseNumber][i], lanes.numbers[kPhaseNumber + 1][i]);
   ASSERT_EQ(lanes.next_pdf[i], next.pdf);
@@ -60,18 +96,41 @@ TEST(Scattering, LanesOfEveryTargetDoAsTheScalarClasses) {
   for (const Simd simd : available_simd()) {
     SCOPED_TRACE(std::string(to_string(simd)));
     const ScatteringKernels& lanes = kernels(simd).scattering;
+    const Cells cells(0.4F);
+    ShadowRoulette without = cells.roulette;
+    without.roots = nullptr;
+    const ShadowRoulette roulettes[] = {cells.roulette, without, ShadowRoulette()};
     // Many rounds, so that numbers come that take a second word: one in 256 does.
     for (uint32_t round = 0; round < 50; ++round) {
       ScatteringStream scatterings =
           make_scatterings(round * 100000, ScatteringStream::kCapacity - round % 3 * 5);
-      lanes.draw_numbers(scatterings, kSeed);
-      lanes.scatter(scatterings);
+      lanes.draw_numbers(scatterings, kSeed, kScatteringBlocks);
+      const ScatteringStream before = scatterings;
+      const ShadowRoulette& roulette = roulettes[round % 3];
+      lanes.scatter(scatterings, roulette);
       for (std::size_t i = 0; i < scatterings.count; ++i) {
         SCOPED_TRACE(i);
-        ASSERT_NO_FATAL_FAILURE(expect_scalar(scatterings, i));
+        ASSERT_NO_FATAL_FAILURE(expect_scalar(scatterings, before, roulette, i));
       }
     }
   }
+}
+
+TEST(ShadowRoulette, CastsFaintRaysByWhatTheyAreExpectedToBring) {
+  const Cells cells(0.5F);
+  const ShadowRoulette& roulette = cells.roulette;
+  // In the cell (2, 1, 0).
+  const Vec3f position(1.5F, 0.6F, -0.9F);
+  const float root = cells.roots[2 + 3 * 1];
+  EXPECT_EQ(roulette.survival(position, roulette.dominant, 0.5F), 1);
+  EXPECT_FLOAT_EQ(roulette.survival(position, roulette.dominant, 0.4F),
+                  std::max(0.8F * root, ShadowRoulette::kLeastSurvival));
+  EXPECT_FLOAT_EQ(roulette.survival(position, -roulette.dominant, 0.4F), 0.8F);
+  EXPECT_EQ(roulette.survival(position, -roulette.dominant, 1e-6F), ShadowRoulette::kLeastSurvival);
+  // Beyond the cells those at their border hold.
+  EXPECT_EQ(roulette.survival({1e6F, 1e6F, -1e6F}, roulette.dominant, 0.4F),
+            roulette.survival(position, roulette.dominant, 0.4F));
+  EXPECT_EQ(ShadowRoulette().survival(position, roulette.dominant, 0), 1);
 }
 
 TEST(Turn, IsThatOfTheLibraryToTheLastDigits) {

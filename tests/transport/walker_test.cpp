@@ -27,6 +27,52 @@ Medium homogeneous_box(float sigma_t) {
   return Medium({component}, 16);
 }
 
+/// Two components, and before them one that neither scatters nor absorbs, if wanted.
+Medium two_components(bool with_another, MediumChannels& channels) {
+  std::vector<Component> components;
+  channels.count = 1;
+  channels.components.clear();
+  for (int k = with_another ? 0 : 1; k < 3; ++k) {
+    Component component;
+    component.density = make_field(Vec3i(-12), Vec3i(11), [&](const Vec3i& p) {
+      return 0.2F + hash_noise(p + Vec3i(100 * k, 0, 0));
+    });
+    components.push_back(component);
+    ComponentChannels& values = channels.components.emplace_back();
+    values.sigma_s[0] = k == 0 ? 0.0F : 0.05F * static_cast<float>(k);
+    values.sigma_a[0] = k == 2 ? 0.04F : 0.0F;
+  }
+  return Medium(components, 8);
+}
+
+TEST(Walker, DoesNotLookAtComponentsOfNoMatter) {
+  MediumChannels all;
+  MediumChannels few;
+  const Medium with = two_components(true, all);
+  const Medium without = two_components(false, few);
+  const RayStream rays = repeat_ray(Vec3f(-20, 0.3F, 0.2F), Vec3f(0.8F, 0.6F, 0), 60, 3000);
+  for (const char* const tracker : {"delta", "decomposition", "multi-volume"}) {
+    SCOPED_TRACE(tracker);
+    WalkSettings settings;
+    settings.tracker = tracker;
+    FlightStream found;
+    FlightStream expected;
+    WalkStatistics counts;
+    WalkStatistics expected_counts;
+    Walker(with, all, settings).free_paths(rays, found, counts);
+    Walker(without, few, settings).free_paths(rays, expected, expected_counts);
+    EXPECT_EQ(counts.lookups, expected_counts.lookups);
+    EXPECT_GT(counts.lookups, rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(found.t[i], expected.t[i]);
+      ASSERT_EQ(found.event[i], expected.event[i]);
+      ASSERT_EQ(found.weight[0][i], expected.weight[0][i]);
+      if (found.event[i] != Event::kScatter) continue;
+      ASSERT_EQ(found.component[i], expected.component[i] + 1);
+    }
+  }
+}
+
 // The first tentative collision is real, and its distance comes from the first number of the
 // stream.
 TEST(Walker, LanesDrawTheNumbersOfTheScalarGenerator) {
