@@ -68,7 +68,7 @@ VolumeReaderPointer open_raw(const VolumeFile& file, const RawLayout& layout) {
 std::filesystem::path raw_header_beside(const std::filesystem::path& path) {
   if (path.extension() != ".raw") return {};
   for (const char* const extension : {".nhdr", ".mhd"}) {
-    const std::filesystem::path longer = path.string() + extension;
+    std::filesystem::path longer = path.string() + extension;
     std::filesystem::path other = path;
     other.replace_extension(extension);
     std::error_code ignored;

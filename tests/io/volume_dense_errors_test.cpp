@@ -59,8 +59,8 @@ TEST(DenseVolumeErrors, WrongAttributesOfVtiAreNamed) {
        {"Float32", "Float16", {"Float16", "can be densities"}},
        {"Float32", "Float64", {"bytes"}},
        {"format=\"binary\"", "format=\"hex\"", {"hex"}},
-       {"format=\"binary\"", "format=\"appended\" offset=\"0\"", {"appended data"}},
-       {"Name=\"density\"", "Name=\"density\" NumberOfComponents=\"2\"", {"float x 2"}},
+       {"format=\"binary\"", R"(format="appended" offset="0")", {"appended data"}},
+       {"Name=\"density\"", R"(Name="density" NumberOfComponents="2")", {"float x 2"}},
        {"</PointData>", "", {"XML"}}});
 }
 

@@ -241,11 +241,7 @@ TEST(DenseVolumes, ZerosAreEmptyAndConstantBlocksAreTiles) {
                    stored<uint8_t>(values));
   };
   std::vector<double> values(16 * 8 * 8, 0);
-  for (int z = 0; z < 8; ++z) {
-    for (int y = 0; y < 8; ++y) {
-      for (int x = 8; x < 16; ++x) values[static_cast<std::size_t>((z * 8 + y) * 16 + x)] = 3;
-    }
-  }
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 16 >= 8 ? 3 : 0;
   write(Vec3i(16, 8, 8), values);
   const LoadedField tile = load_field(folder / "a.mha");
   EXPECT_EQ(tile.active_tiles, 1U);

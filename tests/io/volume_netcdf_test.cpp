@@ -96,6 +96,7 @@ double extinction(int t, int z, int y, int x) {
 
 std::vector<double> even(int count, double first, double step) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values.push_back(first + step * i);
   return values;
 }
