@@ -13,7 +13,7 @@ install(TARGETS ${freepath_installed} EXPORT freepath_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS freepath RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS freepath_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS freepath_images freepath_netcdf LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(room base media tracking transport io)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/freepath/${room}
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/freepath

@@ -13,6 +13,7 @@ void add_render_command(CLI::App& program, const std::function<double()>& clock)
 void add_merge_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
+void add_convert_command(CLI::App& program);
 void add_flux_command(CLI::App& program);
 void add_slab_command(CLI::App& program);
 void add_diff_command(CLI::App& program);

@@ -292,8 +292,10 @@ void add_flux_command(CLI::App& program) {
       "flux", "Reflectance, transmittance and absorptance of volumes that repeat sideways");
   const auto options = std::make_shared<FluxOptions>();
   command
-      ->add_option("volume", options->volumes.files,
-                   "Volume files, .vdb or .nvdb, which overlap, each where its file puts it")
+      ->add_option(
+          "volume", options->volumes.files,
+          "Volume files of any format that freepath info reads, which overlap, each where its "
+          "file puts it")
       ->required();
   add_domain_options(*command, *options);
   add_light_options(*command, *options);

@@ -22,12 +22,14 @@ namespace freepath::program {
 namespace {
 
 constexpr const char* kInfoFooter =
-    R"(Lists the grids of a volume file (.vdb or .nvdb) and loads each that can be a density.
+    R"(Lists the grids of a volume file and loads each that can be a density: OpenVDB, NanoVDB, VTI, legacy
+VTK, NRRD, MetaImage, NIfTI and NetCDF are read.
 --grid looks at one of them: a name (the first of that name, name[1] the second), or a number.
 
 Examples:
   freepath info cloud.vdb
   freepath info cloud.vdb --grid density
+  freepath info les.nc --grid extinction@3
   freepath info cloud.nvdb --json)";
 
 struct InfoOptions {
@@ -197,6 +199,14 @@ Bricks bricks_of(const std::vector<LoadedField>& fields) {
   return sum;
 }
 
+std::string units_text(const GridInfo& info) {
+  std::string text;
+  if (!info.length_unit.empty()) text += "positions in " + info.length_unit;
+  if (!info.value_unit.empty())
+    text += (text.empty() ? "" : ", ") + ("values in " + info.value_unit);
+  return text;
+}
+
 std::string grid_text(const Described& grid) {
   const GridInfo& info = grid.info;
   std::string lines = fmt::format("grid {}: \"{}\"\n", info.index, printable(info.name));
@@ -205,6 +215,8 @@ std::string grid_text(const Described& grid) {
   };
   const Vec3d voxel = placement_of(info.index_to_world).voxel_size;
   row("type", fmt::format("{}, {}", info.type, info.grid_class));
+  if (!info.length_unit.empty() || !info.value_unit.empty()) row("units", units_text(info));
+  if (info.times > 1) row("times", fmt::format("{}, of which this is {}", info.times, info.time));
   row("voxel size", fmt::format("{:.6g} x {:.6g} x {:.6g}", voxel.x, voxel.y, voxel.z));
   row("transform", transform_text(info));
   if (info.empty() && info.loadable) row("active", "no voxels: it is empty");
@@ -266,6 +278,12 @@ nlohmann::json grid_json(const Described& grid) {
   for (int row = 0; row < 4; ++row) {
     const double* const m = info.index_to_world[row];
     json["index_to_world"].push_back({m[0], m[1], m[2], m[3]});
+  }
+  if (!info.length_unit.empty()) json["length_unit"] = info.length_unit;
+  if (!info.value_unit.empty()) json["value_unit"] = info.value_unit;
+  if (info.times > 1) {
+    json["times"] = info.times;
+    json["time"] = info.time;
   }
   if (!info.loadable) json["reason"] = info.reason;
   if (!info.empty()) {
@@ -340,7 +358,7 @@ void add_info_command(CLI::App& program) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* const command = program.add_subcommand("info", "Show the grids of a volume file");
   command->footer(kInfoFooter);
-  command->add_option("FILE", options->file, "Volume file (.vdb, .nvdb)")->required();
+  command->add_option("FILE", options->file, "Volume file")->required();
   command->add_option("--grid", options->grid, "Only this grid: name or number");
   command->add_flag("--json", options->json, "One JSON object on standard output");
   command->callback([options] { run(*options); });

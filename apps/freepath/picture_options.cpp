@@ -157,9 +157,10 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
   command
-      .add_option("volume", options.volumes.files,
-                  "Volume files, .vdb or .nvdb, which overlap, each where its file puts it; or one "
-                  "scene, .pbrt")
+      .add_option(
+          "volume", options.volumes.files,
+          "Volume files of any format that freepath info reads, which overlap, each where its "
+          "file puts it; or one scene, .pbrt")
       ->required();
   add_camera_options(command, options);
   add_volume_options(command, options.volumes);

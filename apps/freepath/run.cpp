@@ -94,6 +94,7 @@ int run_command(int argc, const char* const* argv, const std::function<double()>
   add_merge_command(program);
   add_info_command(program);
   add_generate_command(program);
+  add_convert_command(program);
   add_flux_command(program);
   add_slab_command(program);
   add_diff_command(program);

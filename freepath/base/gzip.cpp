@@ -20,7 +20,7 @@ struct GzipReader::State {
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
 GzipReader::GzipReader(std::string_view packed) : state_(std::make_unique<State>()) {
-  constexpr int kGzipWindow = 15 + 16;  // The largest window; 16 asks for gzip's header.
+  constexpr int kGzipWindow = 15 + 32;  // The largest window; 32 takes gzip's header or zlib's.
   state_->packed = packed;
   if (inflateInit2(&state_->stream, kGzipWindow) != Z_OK) throw std::bad_alloc();
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// @file Data that gzip has packed.
+/// @file Data that gzip or zlib has packed.
 
 #include <cstddef>
 #include <memory>
@@ -11,7 +11,8 @@ namespace freepath {
 /// Whether data begin as a gzip file does.
 bool is_gzip(std::string_view bytes);
 
-/// Unpacks a gzip file piece by piece, as it is asked for. A file may have several members.
+/// Unpacks a gzip file, or a stream of zlib's, piece by piece, as it is asked for. A file may have
+/// several members.
 class GzipReader {
  public:
   /// @param packed must outlive the reader

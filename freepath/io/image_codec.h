@@ -24,9 +24,8 @@ struct ImageCodec {
                       int& alpha);
 };
 
-/// The function that the library exports, ImageCodecFunction.
+/// The function that the library exports; it returns the table of functions.
 inline constexpr const char* kImageCodecFunction = "freepath_image_codec";
-using ImageCodecFunction = const ImageCodec* (*)();
 
 /// The library, loaded by the first call; from any thread.
 /// @throws Error that says what to do, if it is missing or of another version

@@ -1,6 +1,7 @@
 #pragma once
-/// @file Reading densities from volume files: OpenVDB (.vdb) and NanoVDB (.nvdb). What a file is is
-/// told by its first bytes, not by its name.
+/// @file Reading densities from volume files: OpenVDB, NanoVDB, VTK's images, NRRD, MetaImage,
+/// NIfTI, NetCDF, and values without a header. What a file is is told by its first bytes, not by
+/// its name.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 
 #include "freepath/base/vector.h"
 #include "freepath/io/invalid_values.h"
+#include "freepath/io/volume_raw.h"
 #include "freepath/media/field.h"
 
 namespace freepath {
@@ -28,10 +30,12 @@ struct GridRange {
 
 /// One grid of a volume file.
 struct GridInfo {
-  std::string name;        ///< With a suffix where several share it: "density", "density[1]".
-  int index = 0;           ///< Place in the file, from 0.
-  std::string type;        ///< Of a voxel: "float", "half", "int32", "bool", "Fp8", "vec3s", ...
-  std::string grid_class;  ///< "fog volume", "level set", "staggered" or "unknown".
+  std::string name;  ///< With a suffix where several share it: "density", "density[1]".
+  int index = 0;     ///< Place in the file, from 0.
+  std::string type;  ///< Of a voxel: "float", "half", "int32", "bool", "Fp8", "vec3s", ...
+  /// "fog volume", "level set", "staggered" or "unknown"; of files with a value for each voxel
+  /// where those are: "samples", "samples at nodes" or "samples in cells".
+  std::string grid_class;
   /// Centre of voxel (i,j,k) is the index point (i,j,k). Of a grid in a frustum only its affine
   /// part, until its fields are read.
   Matrix4d index_to_world;
@@ -44,8 +48,13 @@ struct GridInfo {
   float minimum = 0, maximum = 0;  ///< Of all channels, as GridRange.
   int channels = 1;                ///< Densities in a voxel: 3 in a grid of vectors, R, G, B.
   std::vector<GridRange> ranges;   ///< Of each channel, once it has been read.
-  bool loadable = false;           ///< Whether load_fields takes it.
-  std::string reason;              ///< Why not.
+  std::string length_unit;   ///< Of positions, as the file has it: "m", "mm"; empty: not told.
+  std::string value_unit;    ///< Of values, "1/m", as the file has it; empty: not told.
+  int times = 1;             ///< How often the grid stands in the file.
+  int time = 0;              ///< The one that is meant, from 0.
+  bool time_chosen = false;  ///< Whether the selection named it.
+  bool loadable = false;     ///< Whether load_fields takes it.
+  std::string reason;        ///< Why not.
 
   /// Whether nothing is in it, as in the first frames of many a sequence.
   bool empty() const { return active_voxels + inactive_voxels == 0; }
@@ -63,9 +72,10 @@ std::vector<GridInfo> list_grid_heads(const std::filesystem::path& path);
 /// What to do about a negative density: refuse the grid, or put 0 in its place and say so.
 enum class NegativePolicy { kError, kClamp };
 
-/// Which grid of a file. With neither: the one named "density", else the only scalar one (vectors
-/// of another name are more often velocities than densities). Where several have the same name, the
-/// name alone is the first, "name[1]" the second, and so on.
+/// Which grid of a file. With neither: the one named "density", else the one named "extinction",
+/// else the only scalar one (vectors of another name are more often velocities than densities).
+/// Where several have the same name, the name alone is the first, "name[1]" the second, and so on.
+/// Behind the name of a grid that stands in the file for several times, "@3" is the fourth.
 struct GridSelection {
   std::optional<std::string> name;
   std::optional<int> index;
@@ -78,14 +88,17 @@ GridSelection parse_grid_selection(std::string_view text);
 /// The one of a file's grids that is selected.
 /// @param file only for the message
 /// @throws Error, listing what there is, if none is
-const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<GridInfo>& grids,
-                          const GridSelection& selection);
+GridInfo find_grid(const std::filesystem::path& file, const std::vector<GridInfo>& grids,
+                   const GridSelection& selection);
 
 struct LoadOptions {
   GridSelection selection;
   NegativePolicy negative = NegativePolicy::kError;
   InvalidPolicy invalid = InvalidPolicy::kZero;
-  bool scalar_only = false;  ///< Refuse grids of vectors.
+  bool scalar_only = false;        ///< Refuse grids of vectors.
+  std::optional<RawLayout> raw{};  ///< Of the values in a file that has no header.
+  /// Effective radius of droplets where a NetCDF file has none [m]; 0: it must have.
+  double effective_radius = 0;
 };
 
 /// A field with what there is to say about it.
@@ -97,7 +110,8 @@ struct LoadedField {
   uint64_t active_voxels = 0;         ///< Those of active tiles included.
   uint64_t inactive_voxels = 0;       ///< Inactive ones that are not 0.
   uint64_t active_tiles = 0;
-  float minimum = 0, maximum = 0;  ///< Of all that are active or not 0, after clamping.
+  float minimum = 0, maximum = 0;       ///< Of all that are active or not 0, after clamping.
+  std::string length_unit, value_unit;  ///< As GridInfo has them.
 
   /// Whether nothing is in it: a field of zeros, a voxel large.
   bool empty() const { return active_voxels + inactive_voxels == 0; }

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "freepath/base/error.h"
 #include "freepath/io/volume_assembly.h"
@@ -22,8 +23,30 @@ std::string listed(const std::vector<GridInfo>& grids) {
 
 /// Whole numbers and truth values are more often labels than densities.
 bool holds_reals(const GridInfo& grid) {
-  constexpr std::string_view kOthers[] = {"int16", "int32", "int64", "uint32", "bool", "mask"};
+  constexpr std::string_view kOthers[] = {"int8",   "int16",  "int32",  "int64", "uint8",
+                                          "uint16", "uint32", "uint64", "bool",  "mask"};
   return std::ranges::find(kOthers, grid.type) == std::end(kOthers);
+}
+
+/// The grid of a name with a time behind it, "lwc@3"; nothing if it is none.
+/// @throws Error if there is no such time
+std::optional<GridInfo> grid_at_time(const std::filesystem::path& file,
+                                     const std::vector<GridInfo>& grids, std::string_view wanted) {
+  const std::size_t mark = wanted.rfind('@');
+  if (mark == wanted.npos) return std::nullopt;
+  const auto named = std::ranges::find(grids, wanted.substr(0, mark), &GridInfo::name);
+  if (named == grids.end()) return std::nullopt;
+  if (!named->loadable) return *named;
+  const std::optional<int> time = parse_grid_selection(wanted.substr(mark + 1)).index;
+  if (!time || *time >= named->times) {
+    fail("{}: grid \"{}\" has no time {}; there are {}, from 0", file.string(), named->name,
+         wanted.substr(mark + 1), named->times);
+  }
+  GridInfo info = *named;
+  info.name = wanted;
+  info.time = *time;
+  info.time_chosen = true;
+  return info;
 }
 
 }  // namespace
@@ -41,8 +64,8 @@ GridSelection parse_grid_selection(std::string_view text) {
   return selection;
 }
 
-const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<GridInfo>& grids,
-                          const GridSelection& selection) {
+GridInfo find_grid(const std::filesystem::path& file, const std::vector<GridInfo>& grids,
+                   const GridSelection& selection) {
   if (grids.empty()) fail("{}: the file holds no grids", file.string());
   if (selection.index) {
     const int index = *selection.index;
@@ -56,9 +79,13 @@ const GridInfo& find_grid(const std::filesystem::path& file, const std::vector<G
   if (wanted.ends_with(kFirst)) wanted.resize(wanted.size() - kFirst.size());
   const auto named = std::ranges::find(grids, wanted, &GridInfo::name);
   if (named != grids.end()) return *named;
+  if (auto timed = grid_at_time(file, grids, wanted)) return *std::move(timed);
   if (selection.name) {
     fail("{}: there is no grid named \"{}\"; it holds {}", file.string(), wanted, listed(grids));
   }
+  const auto extinction = std::ranges::find(grids, "extinction", &GridInfo::name);
+  // Where it can't be had, the reason says more than other values rendered in its place would.
+  if (extinction != grids.end()) return *extinction;
   bool reals = true;
   const auto is_default = [&reals](const GridInfo& grid) {
     return grid.loadable && grid.channels == 1 && holds_reals(grid) == reals;

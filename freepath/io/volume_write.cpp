@@ -12,7 +12,9 @@
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
 #include "freepath/io/content_digest.h"
+#include "freepath/io/volume_text.h"
 #include "freepath/io/volume_vdb_layout.h"
+#include "freepath/io/volume_write_grid.h"
 
 namespace freepath {
 namespace {
@@ -41,22 +43,6 @@ void add_brick(std::span<const float> voxels, const openvdb::Coord& origin,
   for (openvdb::Index offset = 0; offset < Leaf::SIZE; ++offset) {
     if (voxels[offset] != 0) leaf->setValueOn(offset, voxels[offset]);
   }
-}
-
-FloatGrid::Ptr grid_of(const Field& field, const VdbWriteOptions& options) {
-  auto grid = FloatGrid::create(0.0F);
-  grid->setName(field.name);
-  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  grid->setSaveFloatAsHalf(options.half);
-  grid->setTransform(transform_of(field));
-  const BrickMap& map = field.voxels;
-  map.for_each_brick([&](const PlacedBrick& placed) {
-    const Vec3i origin = placed.place * BrickMap::kBrickSize;
-    add_brick(map.voxels().subspan(std::size_t{placed.brick} * BrickMap::kBrickVoxels,
-                                   BrickMap::kBrickVoxels),
-              openvdb::Coord(origin.x, origin.y, origin.z), grid->tree());
-  });
-  return grid;
 }
 
 /// Puts a name of the contents where OpenVDB writes a random one, so that the same fields give the
@@ -100,6 +86,25 @@ void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& 
 
 }  // namespace
 
+namespace io {
+
+openvdb::FloatGrid::Ptr openvdb_grid_of(const Field& field) {
+  auto grid = FloatGrid::create(0.0F);
+  grid->setName(field.name);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->setTransform(transform_of(field));
+  const BrickMap& map = field.voxels;
+  map.for_each_brick([&](const PlacedBrick& placed) {
+    const Vec3i origin = placed.place * BrickMap::kBrickSize;
+    add_brick(map.voxels().subspan(std::size_t{placed.brick} * BrickMap::kBrickVoxels,
+                                   BrickMap::kBrickVoxels),
+              openvdb::Coord(origin.x, origin.y, origin.z), grid->tree());
+  });
+  return grid;
+}
+
+}  // namespace io
+
 void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
                const VdbWriteOptions& options) {
   AsideFile file(path.string());
@@ -112,12 +117,39 @@ void write_vdb(AsideFile& file, std::span<const Field* const> fields,
   openvdb::initialize();
   try {
     openvdb::GridCPtrVec grids;
-    for (const Field* field : fields) grids.push_back(grid_of(*field, options));
+    for (const Field* field : fields) {
+      const auto grid = io::openvdb_grid_of(*field);
+      grid->setSaveFloatAsHalf(options.half);
+      grids.push_back(grid);
+    }
     write_grids(file.name(), grids);
   } catch (const std::exception& error) {
     file.give_up(error.what());
   }
   file.replace_target();
+}
+
+VolumeFormat volume_format(const std::string& path) {
+  const std::string extension = io::lower_case(std::filesystem::path(path).extension().string());
+  if (extension == ".vdb") return VolumeFormat::kVdb;
+  if (extension == ".nvdb") return VolumeFormat::kNvdb;
+  if (extension == ".vti") return VolumeFormat::kVti;
+  fail("{}: can't write volumes with the extension \"{}\"; use .vdb, .nvdb or .vti", path,
+       extension);
+}
+
+void write_volume(AsideFile& file, std::span<const Field* const> fields,
+                  const VdbWriteOptions& options) {
+  switch (volume_format(file.path())) {
+    case VolumeFormat::kVdb:
+      return write_vdb(file, fields, options);
+    case VolumeFormat::kNvdb:
+      return write_nvdb(file, fields, options);
+    case VolumeFormat::kVti:
+      break;
+  }
+  if (options.half) fail("{}: a VTK image holds no halves; write a .vdb or .nvdb", file.path());
+  write_vti(file, fields);
 }
 
 }  // namespace freepath

@@ -1,8 +1,9 @@
 #pragma once
-/// @file Writing scalar fields to OpenVDB files.
+/// @file Writing scalar fields to volume files.
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "freepath/io/aside_file.h"
 #include "freepath/media/field.h"
@@ -10,8 +11,17 @@
 namespace freepath {
 
 struct VdbWriteOptions {
-  bool half = false;  ///< Store values in half precision: half the size, 11 significant bits.
+  /// Store values in 16 bits: reals of half precision, with 11 significant bits, in OpenVDB files,
+  /// steps of 2^-16 of the range of each 8³ block in NanoVDB files.
+  bool half = false;
 };
+
+/// A format that fields are written in.
+enum class VolumeFormat { kVdb, kNvdb, kVti };
+
+/// The format of a file's extension, .vdb, .nvdb or .vti.
+/// @throws Error that names the file, for another extension
+VolumeFormat volume_format(const std::string& path);
 
 /// Writes fields as float fog volumes of one .vdb file, compressed by blosc. Voxels of value 0 are
 /// inactive; a brick of one value becomes a tile. The same fields give the same bytes.
@@ -24,5 +34,22 @@ void write_vdb(const std::filesystem::path& path, std::span<const Field* const> 
 /// The same to a file that is open already.
 void write_vdb(AsideFile& file, std::span<const Field* const> fields,
                const VdbWriteOptions& options = {});
+
+/// Writes fields as fog volumes of one NanoVDB file, packed by zip. The same fields give the same
+/// bytes.
+/// @throws Error as write_vdb
+void write_nvdb(AsideFile& file, std::span<const Field* const> fields,
+                const VdbWriteOptions& options = {});
+
+/// Writes fields as point data of one VTK image (.vti), floats behind the markup: a value for every
+/// voxel of the box that holds all active ones.
+/// @throws Error as write_vdb, and if the fields stand in different grids or the edges of their
+/// voxels are not perpendicular, which the format can't tell
+void write_vti(AsideFile& file, std::span<const Field* const> fields);
+
+/// Writes fields in the format of the file's extension.
+/// @throws Error as the function of that format, and if a VTK image is to hold halves
+void write_volume(AsideFile& file, std::span<const Field* const> fields,
+                  const VdbWriteOptions& options = {});
 
 }  // namespace freepath

@@ -138,7 +138,7 @@ TEST_F(CommandsTest, VersionAndHelpSucceed) {
   EXPECT_EQ(start("--version").status, 0);
   const Outcome help = start("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"render", "info", "generate", "slab", "diff"}) {
+  for (const char* command : {"render", "info", "generate", "convert", "slab", "diff", "merge"}) {
     EXPECT_NE(help.output.find(command), std::string::npos) << command;
   }
 }
@@ -169,7 +169,7 @@ std::string with_option(const std::string& line, const std::string& option,
 }
 
 TEST_F(CommandsTest, ExamplesOfTheHelpAreAccepted) {
-  for (const std::string command : {"render", "info", "generate", "slab", "diff", "merge"}) {
+  for (const std::string command : {"render", "info", "generate", "convert", "slab", "diff", "merge"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0) << help;
     const std::vector<std::string> examples = examples_in(help.output);
@@ -186,7 +186,8 @@ TEST_F(CommandsTest, ExamplesOfTheHelpAreAccepted) {
       // The files are not there: that, and nothing else, is what may be wrong with the line.
       EXPECT_EQ(outcome.status, 1) << example << '\n' << outcome;
       bool names_file = false;
-      for (const char* ending : {".vdb: ", ".nvdb: ", ".hdr: ", ".exr: ", ".pbrt: ", ".film: "}) {
+      for (const char* ending : {".vdb: ", ".nvdb: ", ".vti: ", ".nii.gz: ", ".nc: ", ".raw: ",
+                                 ".hdr: ", ".exr: ", ".pbrt: ", ".film: "}) {
         names_file |= outcome.messages.find(ending) != std::string::npos;
       }
       EXPECT_TRUE(names_file) << example << '\n' << outcome;

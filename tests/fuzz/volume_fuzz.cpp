@@ -1,4 +1,4 @@
-// Any bytes as an OpenVDB or NanoVDB file.
+// Any bytes as a volume file.
 //
 // The smallest grids have 10 kB and 300 kB, nearly all of them 0 in masks and tables of nodes, so
 // that an input says what to change in one of the files of the folder FREEPATH_FUZZ_BASES (in the

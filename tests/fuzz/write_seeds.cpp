@@ -17,6 +17,7 @@
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 #include "freepath/io/image_plain.h"
+#include "tests/io/dense_files.h"
 #include "tests/io/volume_files.h"
 #include "tests/io/volume_oddities.h"
 
@@ -25,12 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace testing_volumes;  // NOLINT(google-build-using-namespace)
-
-void write_text(const fs::path& path, const std::string& bytes) {
-  std::ofstream stream(path, std::ios::binary);
-  stream << bytes;
-  if (!stream.flush()) throw Error("can't write " + path.string());
-}
 
 /// Few voxels in two leaves, and a small tile.
 TestGrid small_grid() {
@@ -71,6 +66,23 @@ void write_nvdb_seeds(const fs::path& folder) {
   write_nvdb_whole(folder / "int64", WholeValues::kInt64);
   write_nvdb_memory(folder / "memory");
   write_nvdb_empty(folder / "empty");
+}
+
+/// Formats with a value for each voxel, each way to store them once.
+void write_dense_seeds(const fs::path& folder) {
+  write_text(folder / "vti", vti_file({.cells = true}));
+  write_text(folder / "vti_text", vti_file({.format = "ascii"}));
+  write_text(folder / "vti_packed", vti_file({.format = "binary", .packed = true, .wide = true}));
+  write_text(folder / "vti_base64", vti_file({.base64 = true, .big_endian = true}));
+  write_text(folder / "vtk", legacy_vtk_file(false, true));
+  write_text(folder / "vtk_text", legacy_vtk_file(true, false));
+  write_text(folder / "nrrd", nrrd_file("raw"));
+  write_text(folder / "nrrd_packed", nrrd_file("gzip"));
+  write_text(folder / "nrrd_text", nrrd_file("ascii"));
+  write_text(folder / "mha", metaimage_file(false));
+  write_text(folder / "mha_packed", metaimage_file(true));
+  write_text(folder / "nii", nifti_file(1, true));
+  write_text(folder / "nii2", nifti_file(2, false, true));
 }
 
 /// An input for each of the files in a folder, without a change, and one whose change has no bytes,
@@ -154,7 +166,8 @@ void write_image_seeds(const fs::path& folder) {
 }
 
 void write_seeds(const fs::path& folder) {
-  for (const char* kind : {"vdb", "vdb_bases", "nvdb", "nvdb_bases", "ply", "image"}) {
+  for (const char* kind :
+       {"vdb", "vdb_bases", "nvdb", "nvdb_bases", "dense", "dense_bases", "ply", "image"}) {
     fs::remove_all(folder / kind);
     fs::create_directories(folder / kind);
   }
@@ -162,6 +175,8 @@ void write_seeds(const fs::path& folder) {
   write_changes(folder / "vdb_bases", folder / "vdb");
   write_nvdb_seeds(folder / "nvdb_bases");
   write_changes(folder / "nvdb_bases", folder / "nvdb");
+  write_dense_seeds(folder / "dense_bases");
+  write_changes(folder / "dense_bases", folder / "dense");
   write_ply_seeds(folder / "ply");
   write_image_seeds(folder / "image");
 }
