@@ -83,6 +83,10 @@ RenderOutcome render_stage(const RenderPlan& plan, const PictureFiles& files,
   report.threads = plan.settings.threads;
   report.frame = files.frame;
   const PathScene scene = make_volume_scene(medium, stage.camera, plan.surroundings, stage.ground);
+  std::vector<std::pair<std::string, std::string>> facts;
+  if (stage.ground && stage.ground->height) {
+    facts.emplace_back("the ground's height", fmt::format("{:.9g}", *stage.ground->height));
+  }
   return render_and_write({.scene = scene,
                            .color = plan.color,
                            .film = plan.film,
@@ -92,7 +96,8 @@ RenderOutcome render_stage(const RenderPlan& plan, const PictureFiles& files,
                            .stats = files.stats,
                            .checkpoint = files.checkpoint,
                            .resume = files.resume,
-                           .files = log},
+                           .files = log,
+                           .facts = facts},
                           report, stop);
 }
 

@@ -1,5 +1,7 @@
 #include "apps/freepath/render_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -116,6 +118,13 @@ void check_not_empty(const RenderResult& result) {
                           : "give more --time, or choose a smaller --size or a thinner volume");
 }
 
+/// Where a camera stands and looks, which may have been framed from another frame's volumes.
+std::string place_text(const Camera& camera) {
+  const Matrix4d matrix = camera.ndc_from_world().value_or(camera.camera_from_world());
+  const double* const values = matrix.getValue();
+  return fmt::format("[{:.9g}]", fmt::join(values, values + 16, " "));
+}
+
 /// Chooses the number of samples by a pilot, and tells of it.
 void settle_samples(const RenderJob& job, RenderSettings& settings, const StopOnInterrupt& stop) {
   if (!job.run.limits_samples) settings.samples = 0;
@@ -171,6 +180,9 @@ RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
   if (before || !job.checkpoint.empty() || has_film) {
     header.identity = picture_identity(
         job.run, settings, job.color == ColorMode::kSpectral ? "spectral" : "rgb", job.files);
+    auto& facts = header.identity.facts;
+    facts.emplace_back("the camera's place", place_text(camera));
+    facts.insert(facts.end(), job.facts.begin(), job.facts.end());
   }
   if (job.run.noise) settle_samples(job, settings, stop);
   header.wanted_samples = settings.samples;

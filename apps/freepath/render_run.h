@@ -2,6 +2,7 @@
 /// @file A rendering from its scene to its files: parts, checkpoints, progress, what is left of it.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/freepath/film_options.h"
@@ -24,6 +25,8 @@ struct RenderJob {
   std::string stats;               ///< May be empty, as those that follow.
   std::string checkpoint, resume;  ///< Of this picture.
   const InputFileLog& files;       ///< That were read for the scene.
+  /// What else the picture depends on: what was chosen by looking at other files.
+  std::vector<std::pair<std::string, std::string>> facts = {};
 };
 
 /// What came of it.

@@ -169,7 +169,8 @@ std::string with_option(const std::string& line, const std::string& option,
 }
 
 TEST_F(CommandsTest, ExamplesOfTheHelpAreAccepted) {
-  for (const std::string command : {"render", "info", "generate", "convert", "slab", "diff", "merge"}) {
+  for (const std::string command :
+       {"render", "info", "generate", "convert", "slab", "diff", "merge"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0) << help;
     const std::vector<std::string> examples = examples_in(help.output);

@@ -193,6 +193,16 @@ TEST_F(PartsTest, PartsThatDoNotFitAreNamed) {
   expect_done("merge a.film late.film -o m.exr --partial");
 }
 
+// A sequence is framed from its first frame: parts of a frame may have been seen from elsewhere.
+TEST_F(PartsTest, PartsSeenFromElsewhereDoNotFit) {
+  write_cube(path("s.1.vdb"), [](const Vec3i& voxel) { return voxel.x < 0 ? ball(voxel) : 0.0F; });
+  fs::copy(path("ball.vdb"), path("s.2.vdb"));
+  const std::string render = "render s.%d.vdb --size 24x18 --ground 0.2 ";
+  expect_done(render + "--frames 1-2 --samples 0-3 -o a.%d.film");
+  expect_done(render + "--frames 2 --samples 4-7 -o b.%d.film");
+  expect_refused("merge a.2.film b.2.film -o m.exr", "the camera's place is");
+}
+
 TEST_F(PartsTest, OptionsThatContradictEachOtherAreRefused) {
   const std::string render = "render ball.vdb --size 8x6 -o a.film ";
   expect_refused(render + "--samples 0-3 --spp 4", "--samples and --spp");
