@@ -6,11 +6,14 @@ Errors are `freepath.Error`, a ValueError, and say what is wrong, where, and wha
 """
 
 from ._field import DensityFunction, Field
+from ._flux import Fluxes, FluxMap, SlabFluxes, flux, slab
 from ._freepath import Error, max_channels, simd
 from ._freepath import version as __version__
 from ._medium import Component, Medium
 from ._methods import Method, Option, PhaseFunction, estimators, phase_functions, trackers
+from ._render import Picture, Progress, render
 from ._sampling import Estimate, Event, FreePaths, sample_free_paths, transmittance
+from ._scene import Scene
 
 __all__ = [
     "Component",
@@ -19,17 +22,26 @@ __all__ = [
     "Estimate",
     "Event",
     "Field",
+    "FluxMap",
+    "Fluxes",
     "FreePaths",
     "Medium",
     "Method",
     "Option",
     "PhaseFunction",
+    "Picture",
+    "Progress",
+    "Scene",
+    "SlabFluxes",
     "__version__",
     "estimators",
+    "flux",
     "max_channels",
     "phase_functions",
+    "render",
     "sample_free_paths",
     "simd",
+    "slab",
     "trackers",
     "transmittance",
 ]

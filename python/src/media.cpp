@@ -48,6 +48,29 @@ Vec3d PythonMedium::origin() const {
   return std::isfinite(middle.length2()) ? middle : Vec3d(0);
 }
 
+VolumeMedium PythonMedium::as_volumes(const PeriodicSides& sides) const {
+  if (!is_renderable()) {
+    fail("the medium has {} channels; scenes take one, or three for R, G and B", channels.count);
+  }
+  if (!sides.any()) {
+    check_optical_depth(*medium);
+    return {.medium = medium};
+  }
+  std::vector<Volume> volumes;
+  for (const Component& component : medium->components()) {
+    if (component.density->function) {
+      fail("'{}' is computed, and can't be repeated: bake it first", component.density->name);
+    }
+    OpticalProperties optics;
+    optics.sigma_a = component.sigma_a;
+    optics.sigma_s = component.sigma_s;
+    optics.phase = component.phase;
+    optics.emission = component.emission;
+    volumes.push_back({.densities = {*component.density}, .optics = std::move(optics)});
+  }
+  return make_medium(std::move(volumes), super_voxel, sides);
+}
+
 namespace {
 
 /// Values of a coefficient, one for each channel.
@@ -65,6 +88,7 @@ Spectrum spectrum_of(const Values& values) {
 
 PythonMedium make_python_medium(const std::vector<ComponentParts>& parts, int super_voxel) {
   PythonMedium result;
+  result.super_voxel = super_voxel;
   std::vector<Component> components;
   for (const auto& [field, sigma_a, sigma_s, emission, phase] : parts) {
     components.push_back({.density = field,

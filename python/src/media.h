@@ -6,6 +6,7 @@
 
 #include "freepath/media/medium.h"
 #include "freepath/media/medium_channels.h"
+#include "freepath/scene/volume_medium.h"
 
 namespace freepath::python {
 
@@ -13,6 +14,7 @@ namespace freepath::python {
 struct PythonMedium {
   std::shared_ptr<const Medium> medium;
   MediumChannels channels;
+  int super_voxel = 0;  ///< As it was asked for.
 
   /// Whether its coefficients are one for all, or R, G and B, so that it can be rendered.
   bool is_renderable() const { return channels.count == 1 || channels.count == kChannels; }
@@ -20,6 +22,9 @@ struct PythonMedium {
   MediumChannels selected(const std::vector<int>& numbers) const;
   /// What positions are relative to in single precision: the middle of the medium.
   Vec3d origin() const;
+  /// The same as scenes take it, repeated along `sides`, for which its voxels are copied.
+  /// @throws Error for channels that are not R, G and B, and as make_medium
+  VolumeMedium as_volumes(const PeriodicSides& sides = {}) const;
 };
 
 }  // namespace freepath::python

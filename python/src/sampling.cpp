@@ -23,6 +23,7 @@
 #include "freepath/transport/walker.h"
 #include "python/src/arrays.h"
 #include "python/src/bindings.h"
+#include "python/src/counts.h"
 #include "python/src/interruptible.h"
 #include "python/src/media.h"
 #include "python/src/ray_arrays.h"
@@ -58,6 +59,21 @@ WalkSettings walk_settings(const WalkOptions& options) {
   return settings;
 }
 
+nb::dict counts_to_python(const WalkStatistics& counts) {
+  nb::dict result;
+  result["rays"] = counts.rays;
+  result["tentative_collisions"] = counts.tentative_collisions;
+  result["null_collisions"] = counts.null_collisions;
+  result["real_collisions"] = counts.real_collisions;
+  result["control_collisions"] = counts.control_collisions;
+  result["lookups"] = counts.lookups;
+  result["super_voxel_steps"] = counts.super_voxel_steps;
+  result["bound_violations"] = counts.bound_violations;
+  result["negative_weights"] = counts.negative_weights;
+  result["largest_weight"] = counts.largest_weight;
+  return result;
+}
+
 namespace {
 
 /// Slots of a batch: streams of so many stay in the nearer caches.
@@ -87,21 +103,6 @@ void for_batches(std::size_t count, std::size_t batch, int threads, const std::a
       if (!stop) work(i * batch, std::min(count, (i + 1) * batch));
     });
   });
-}
-
-nb::dict counts_to_python(const WalkStatistics& counts) {
-  nb::dict result;
-  result["rays"] = counts.rays;
-  result["tentative_collisions"] = counts.tentative_collisions;
-  result["null_collisions"] = counts.null_collisions;
-  result["real_collisions"] = counts.real_collisions;
-  result["control_collisions"] = counts.control_collisions;
-  result["lookups"] = counts.lookups;
-  result["super_voxel_steps"] = counts.super_voxel_steps;
-  result["bound_violations"] = counts.bound_violations;
-  result["negative_weights"] = counts.negative_weights;
-  result["largest_weight"] = counts.largest_weight;
-  return result;
 }
 
 /// What becomes of rays: arrays of one value each, or one for each channel.
