@@ -37,13 +37,13 @@ def as_array(values: Any, what: str) -> Floats:
             f"{what}: {type(values).__name__} is no array of numbers that NumPy can read ({error}); "
             "give a NumPy array, or one in the machine's own memory"
         ) from error
+    if not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
     if array.dtype not in (np.float32, np.float64):
         raise Error(
             f"{what}: its dtype is {array.dtype}; give float32 or float64, "
             "for example by .astype(numpy.float32)"
         )
-    if not array.dtype.isnative:
-        array = array.astype(array.dtype.newbyteorder("="))
     # The extension counts strides in elements.
     if any(stride % array.itemsize for stride in array.strides) or not array.flags.aligned:
         array = array.copy()

@@ -128,7 +128,7 @@ class ProgressDesk {
   /// @param samples of each pixel that there will be, 0 if that is not known
   /// @param wants_picture whether to keep the picture of each pass that was asked for
   ProgressDesk(uint32_t samples, bool wants_picture)
-      : wants_picture_(wants_picture), progress_{.samples_total = double{samples}} {}
+      : wants_picture_(wants_picture), progress_{.samples_total = static_cast<double>(samples)} {}
 
   void put(const RenderProgress& progress) {
     const std::lock_guard lock(gate_);
