@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 import pytest
-from hypothesis import settings
+from hypothesis import Phase, settings
 
 import freepath as fp
 
@@ -15,6 +15,7 @@ settings.register_profile(
     derandomize=True,
     deadline=None,
     database=None,
+    phases=[Phase.explicit, Phase.generate],  # to shrink examples of statistics leads nowhere
     max_examples=int(os.environ.get("FREEPATH_EXAMPLES", "25")),
 )
 settings.load_profile("tests")

@@ -51,9 +51,16 @@ class Grid:
         return depth[np.searchsorted(cuts, ends)]
 
 
+def z_score(mean, error, expected, count):
+    """By how many standard errors a mean of `count` values differs from what it should be.
+
+    Values are of the order of 1. Of what happens less than some times in so many, the error that
+    the values themselves tell is none: three of them are granted.
+    """
+    return (np.asarray(mean) - expected) / np.hypot(error, 3 / count)
+
+
 def z_of(values, expected):
-    """By how many standard errors the mean of values differs from what it should be."""
+    """The same of values."""
     values = np.asarray(values, float)
-    error = values.std(ddof=1) / np.sqrt(values.size)
-    # Values that are all the same say what they say to rounding.
-    return (values.mean() - expected) / max(error, 1e-6 * max(abs(expected), 1e-3))
+    return z_score(values.mean(), values.std(ddof=1) / np.sqrt(values.size), expected, values.size)
