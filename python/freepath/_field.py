@@ -194,9 +194,9 @@ class DensityFunction(Field):
 
     * a function compiled by `numba.cfunc`, or any other C function, is called without Python, at
       the speed of C;
-    * a Python callable is called with the interpreter's lock held, which takes some ten
-      microseconds for each call and lets one thread work at a time: a thousand times slower. It is
-      for trying out; `bake` makes voxels of it, which walks read at full speed.
+    * a Python callable is called with the interpreter's lock held, which takes some microseconds
+      for each call and lets one thread work at a time: some fifty times slower (docs/python.md). It
+      is for trying out; `bake` makes voxels of it, which walks read at full speed.
 
     The components of one medium are all computed or all of voxels, and share `cells`.
 

@@ -16,7 +16,7 @@ settings.register_profile(
     deadline=None,
     database=None,
     phases=[Phase.explicit, Phase.generate],  # to shrink examples of statistics leads nowhere
-    max_examples=int(os.environ.get("FREEPATH_EXAMPLES", "25")),
+    max_examples=int(os.environ.get("FREEPATH_EXAMPLES", "10")),
 )
 settings.load_profile("tests")
 
