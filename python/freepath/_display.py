@@ -57,7 +57,7 @@ class _Notebook:
     _SECONDS_BETWEEN = 0.5
 
     def __init__(self) -> None:
-        from IPython.display import display
+        from IPython.display import display  # type: ignore[import-not-found]
 
         self._handle = display({"text/plain": ""}, raw=True, display_id=True)
         self._image: NDArray[np.float32] | None = None

@@ -366,7 +366,7 @@ def _transform(voxel_size: Any, origin: Any, transform: Any, name: str) -> list[
                 f"{name}: transform is a 4x4 matrix whose last column is 0, 0, 0, 1: points are "
                 "rows, and the last row is the offset"
             )
-        return matrix.tolist()  # type: ignore[no-any-return]
+        return matrix.tolist()
     size = as_triple(1.0 if voxel_size is None else voxel_size, f"{name}: voxel_size")
     corner = as_triple(0.0 if origin is None else origin, f"{name}: origin")
     if min(size) <= 0:

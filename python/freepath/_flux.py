@@ -104,9 +104,10 @@ def slab(
         walk_options(tracker=tracker, absorption=absorption, seed=seed, simd=simd),
         threads_of(threads),
     )
-    return SlabFluxes(
-        **{k: Estimate(*v) if isinstance(v, tuple) else v for k, v in result.items()}
-    )
+    parts: dict[str, Any] = {
+        k: Estimate(*v) if isinstance(v, tuple) else v for k, v in result.items()
+    }
+    return SlabFluxes(**parts)
 
 
 @dataclass(frozen=True)
@@ -222,10 +223,10 @@ def flux(
     options.threads = threads_of(threads)
     result = _freepath.flux(as_medium(medium)._core, options)
     radiances = tuple(_map(radiance) for radiance in result.pop("radiances"))
-    return Fluxes(
-        radiances=radiances,
-        **{k: _map(v) if isinstance(v, tuple) else v for k, v in result.items()},
-    )
+    parts: dict[str, Any] = {
+        k: _map(v) if isinstance(v, tuple) else v for k, v in result.items()
+    }
+    return Fluxes(radiances=radiances, **parts)
 
 
 def _for_layers(values: Any, what: str, count: int) -> NDArray[Any]:

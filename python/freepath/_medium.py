@@ -81,7 +81,7 @@ class Medium:
     ) -> None:
         self.components = _component_list(components)
         count = _channel_count(self.components)
-        parts = [
+        parts: list[Any] = [
             (
                 component.field._core,
                 *(_repeated(v, count) for v in _coefficients(component)),

@@ -125,7 +125,8 @@ class PhaseFunction:
         if not (np.abs(array) <= 1).all():
             raise Error("cosines: they lie in [-1, 1]")
         flat = np.ascontiguousarray(array.reshape(-1))
-        return self._core.evaluate(flat).reshape(array.shape)  # type: ignore[no-any-return]
+        values: Any = self._core.evaluate(flat)
+        return values.reshape(array.shape)  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:
         return f"freepath.PhaseFunction({self.text!r})"

@@ -46,7 +46,8 @@ class Picture:
 
     def __init__(self, core: _freepath.Picture) -> None:
         self._core = core
-        self._pixels: NDArray[np.float32] = core.pixels
+        pixels: Any = core.pixels
+        self._pixels: NDArray[np.float32] = pixels
         self._places = {name: i for i, name in enumerate(core.channels)}
 
     @property

@@ -141,7 +141,7 @@ class Scene:
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the picture [pixels]."""
-        return self._core.size  # type: ignore[return-value]
+        return self._core.size
 
     @property
     def files(self) -> list[str]:
