@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "freepath/base/error.h"
 #include "freepath/base/octahedral.h"
@@ -253,7 +254,25 @@ Camera::Camera(const CameraModel& model, const Matrix4d& world_from_camera, int 
 Camera::Camera(const View& view, int width, int height)
     : Camera(pinhole(view, width, height), world_from_camera(view), width, height) {}
 
+Camera::Camera(std::vector<CameraRay> rays, int width, int height)
+    : width_(width),
+      height_(height),
+      rays_(Given{std::make_shared<const std::vector<CameraRay>>(std::move(rays)), width, height}) {
+  check_film(width, height);
+  const std::size_t count = std::get<Given>(rays_).rays->size();
+  if (count != static_cast<std::size_t>(width) * height) {
+    fail("there are {} rays for {} x {} pixels; give one for each", count, width, height);
+  }
+}
+
+CameraRay Camera::Given::ray(float film_x, float film_y) const {
+  const int column = std::clamp(static_cast<int>(film_x), 0, width - 1);
+  const int row = std::clamp(static_cast<int>(film_y), 0, height - 1);
+  return (*rays)[static_cast<std::size_t>(row) * width + column];
+}
+
 Vec3d Camera::up() const {
+  if (std::holds_alternative<Given>(rays_)) return {0, 0, 1};
   if (const auto* camera = std::get_if<Projective>(&rays_)) return -camera->step_y;
   return Vec3d(std::get<Spherical>(rays_).up);
 }
@@ -262,6 +281,7 @@ bool Camera::is_mirrored() const {
   if (const auto* camera = std::get_if<Projective>(&rays_)) {
     return camera->step_x.cross(-camera->step_y).dot(Vec3d(camera->ahead)) > 0;
   }
+  if (std::holds_alternative<Given>(rays_)) return false;
   const auto& camera = std::get<Spherical>(rays_);
   return camera.right.cross(camera.up).dot(camera.ahead) > 0;
 }
@@ -279,6 +299,7 @@ CameraRay Camera::ray(float film_x, float film_y, float lens_u, float lens_v) co
   if (const auto* camera = std::get_if<Projective>(&rays_)) {
     return camera->ray(film_x, film_y, lens_u, lens_v);
   }
+  if (const auto* camera = std::get_if<Given>(&rays_)) return camera->ray(film_x, film_y);
   return std::get_if<Spherical>(&rays_)->ray(film_x, film_y);
 }
 

@@ -11,7 +11,7 @@ from ._freepath import Error, max_channels, simd
 from ._freepath import version as __version__
 from ._medium import Component, Medium
 from ._methods import Method, Option, PhaseFunction, estimators, phase_functions, trackers
-from ._render import Picture, Progress, render
+from ._render import Picture, Progress, radiance, render
 from ._sampling import Estimate, Event, FreePaths, sample_free_paths, transmittance
 from ._scene import Scene
 
@@ -38,6 +38,7 @@ __all__ = [
     "flux",
     "max_channels",
     "phase_functions",
+    "radiance",
     "render",
     "sample_free_paths",
     "simd",

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _freepath
-from ._arrays import as_count
+from ._arrays import Rays, as_count
 from ._freepath import Error
-from ._sampling import threads_of, walk_options
+from ._sampling import Estimate, threads_of, walk_options
 from ._scene import Scene
 
 
@@ -182,20 +182,12 @@ def render(
         KeyboardInterrupt: at Ctrl-C; nothing is returned then.
         Exception: whatever `progress` raises, once the rendering has ended.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene: {type(scene).__name__} is no Scene; see Scene.around")
-    options = _freepath.RenderOptions()
-    options.walk = walk_options(absorption=absorption, emission=emission, simd=simd)
-    options.samples = None if spp is None else as_count(spp, "spp", 1, 2**30)
+    options = _options(
+        scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
+        max_scatterings, wavelengths, shadow_roulette, threads, simd,
+    )  # fmt: skip
     options.time_limit = _seconds(time)
-    options.seed = None if seed is None else as_count(seed, "seed", 0, 2**64 - 1)
-    options.color, options.layers = color, layers
-    options.tracker, options.estimator, options.interpolation = tracker, estimator, interpolation
-    if max_scatterings is not None:
-        options.max_scatterings = as_count(max_scatterings, "max_scatterings", 1, 2**32 - 1)
-    options.wavelengths = as_count(wavelengths, "wavelengths", 1, _freepath.max_channels)
-    options.threads = threads_of(threads)
-    options.shadow_roulette = bool(shadow_roulette)
+    options.layers = layers
     if crop is not None:
         if len(crop) != 4:
             raise Error(f"crop: {crop!r} is not x0, y0, x1, y1")
@@ -212,6 +204,92 @@ def render(
         if shown is not None:
             shown.close()
     return _checked(Picture(core))
+
+
+def radiance(
+    scene: Scene,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    *,
+    spp: int | None = None,
+    seed: int | None = None,
+    color: str | None = None,
+    tracker: str | None = None,
+    estimator: str | None = None,
+    interpolation: str | None = None,
+    absorption: str = "weighted",
+    emission: str = "collision",
+    max_scatterings: int | None = None,
+    wavelengths: int = 4,
+    shadow_roulette: bool = True,
+    threads: int = 0,
+    simd: str = "best",
+) -> Estimate:
+    """Estimate the radiance that comes in along rays: a sensor of your own.
+
+    The rays take the place of the scene's camera, and begin in the media that it is in. What ray
+    number i gets depends on the scene, the ray, i, `spp` and `seed` alone.
+
+    Args:
+        scene: what is seen; while it is, others who render it wait.
+        origins: float32 or float64 of shape (..., 3) [m, world].
+        directions: of shape (..., 3), away from the sensor; scaled to unit vectors.
+        spp: samples of each ray [64]; two at least, if the error is to mean something.
+        seed, color, tracker, estimator, interpolation, absorption, emission, max_scatterings,
+        wavelengths, shadow_roulette, threads, simd: as `render` has them.
+
+    Returns:
+        Mean and standard error of R, G and B (linear), float64 of shape (..., 3).
+
+    Raises:
+        Error: as `render`, and for rays that are none, naming the first.
+        KeyboardInterrupt: at Ctrl-C; nothing is returned then.
+    """
+    options = _options(
+        scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
+        max_scatterings, wavelengths, shadow_roulette, threads, simd,
+    )  # fmt: skip
+    options.layers = "variance"
+    rays = Rays(origins, directions, np.inf)
+    count = len(rays.origins)
+    if count == 0:
+        return Estimate(*(np.empty((*rays.shape, 3)) for _ in range(2)))
+    width = min(count, _ROW)
+    core = _freepath.radiance(
+        scene._core, options, rays.origins, rays.directions, rays.t_max, width
+    )
+    picture = _checked(Picture(core))
+    mean, variance = (
+        pixels.reshape(-1, 3)[:count].astype(np.float64)
+        for pixels in (picture.image, picture.variance)
+    )
+    return Estimate(mean.reshape((*rays.shape, 3)), np.sqrt(variance).reshape((*rays.shape, 3)))
+
+
+_ROW = 1024
+"""Rays in a row of the picture that they are rendered as."""
+
+
+def _options(
+    scene: Scene, spp: Any, seed: Any, color: Any, tracker: Any, estimator: Any, interpolation: Any,
+    absorption: Any, emission: Any, max_scatterings: Any, wavelengths: Any, shadow_roulette: Any,
+    threads: Any, simd: Any,
+) -> _freepath.RenderOptions:  # fmt: skip
+    """Options that pictures and rays have in common."""
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene: {type(scene).__name__} is no Scene; see Scene.around")
+    options = _freepath.RenderOptions()
+    options.walk = walk_options(absorption=absorption, emission=emission, simd=simd)
+    options.samples = None if spp is None else as_count(spp, "spp", 1, 2**30)
+    options.seed = None if seed is None else as_count(seed, "seed", 0, 2**64 - 1)
+    options.color = color
+    options.tracker, options.estimator, options.interpolation = tracker, estimator, interpolation
+    if max_scatterings is not None:
+        options.max_scatterings = as_count(max_scatterings, "max_scatterings", 1, 2**32 - 1)
+    options.wavelengths = as_count(wavelengths, "wavelengths", 1, _freepath.max_channels)
+    options.threads = threads_of(threads)
+    options.shadow_roulette = bool(shadow_roulette)
+    return options
 
 
 def _seconds(time: float | None) -> float:

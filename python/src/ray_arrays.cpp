@@ -33,11 +33,10 @@ RayArrays::RayArrays(const VectorArray& origins, const VectorArray& directions,
   t_max_ = column(t_max, 0);
 }
 
-void RayArrays::put(std::size_t ray, const Vec3d& origin, std::size_t slot, RayStream& rays) const {
+CameraRay RayArrays::ray(std::size_t ray) const {
   const Vec3d from(origin_[0][ray], origin_[1][ray], origin_[2][ray]);
   Vec3d along(direction_[0][ray], direction_[1][ray], direction_[2][ray]);
   const double square = along.length2();
-  const double end = t_max_[ray];
   if (!std::isfinite(from.length2())) {
     fail("ray {}: its origin ({}, {}, {}) is not finite, or too far away", ray, from.x, from.y,
          from.z);
@@ -46,13 +45,20 @@ void RayArrays::put(std::size_t ray, const Vec3d& origin, std::size_t slot, RayS
     fail("ray {}: its direction ({}, {}, {}) must be finite and not 0", ray, along.x, along.y,
          along.z);
   }
-  if (!(end >= 0)) fail("ray {}: its t_max is {}; it must be 0 or more", ray, end);
   // Those that are unit vectors in single precision stay as they are, to the bit.
   constexpr double kRounding = 1e-6;
   if (std::abs(square - 1) > kRounding) along /= std::sqrt(square);
+  return {from, Vec3f(along)};
+}
+
+void RayArrays::put(std::size_t number, const Vec3d& origin, std::size_t slot,
+                    RayStream& rays) const {
+  const CameraRay one = ray(number);
+  const double end = t_max_[number];
+  if (!(end >= 0)) fail("ray {}: its t_max is {}; it must be 0 or more", number, end);
   for (int axis = 0; axis < 3; ++axis) {
-    rays.origin[axis][slot] = static_cast<float>(from[axis] - origin[axis]);
-    rays.direction[axis][slot] = static_cast<float>(along[axis]);
+    rays.origin[axis][slot] = static_cast<float>(one.origin[axis] - origin[axis]);
+    rays.direction[axis][slot] = one.direction[axis];
   }
   rays.t_max[slot] = static_cast<float>(end);
 }

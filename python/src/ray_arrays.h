@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "freepath/base/vector.h"
+#include "freepath/sensors/camera.h"
 #include "freepath/tracking/streams.h"
 
 namespace freepath::python {
@@ -27,12 +28,16 @@ class RayArrays {
 
   std::size_t size() const { return count_; }
 
+  /// A ray, its direction a unit vector.
+  /// @throws Error as put()
+  CameraRay ray(std::size_t ray) const;
+
   /// Writes a ray to a slot of a stream; its direction is made a unit vector.
   /// @param origin what positions of the stream are relative to [world]
   /// @param stream number of the ray's random stream (stream_number)
   /// @throws Error, naming the ray, for an origin or a direction that is not finite, a direction
   ///   of length 0, and an end that is NaN or negative
-  void put(std::size_t ray, const Vec3d& origin, std::size_t slot, RayStream& rays) const;
+  void put(std::size_t number, const Vec3d& origin, std::size_t slot, RayStream& rays) const;
 
  private:
   /// One number of each ray.

@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@
 #include "python/src/bindings.h"
 #include "python/src/counts.h"
 #include "python/src/interruptible.h"
+#include "python/src/ray_arrays.h"
 #include "python/src/scenes.h"
 #include "python/src/walk_options.h"
 
@@ -165,6 +167,21 @@ bool tell_progress(const nb::object& callback, ProgressDesk& desk) {
   return !answer.is(nb::bool_(false));
 }
 
+void take_result(const RenderResult& result, PythonPicture& picture) {
+  picture.image = result.film.to_image();
+  picture.free_paths = result.free_paths;
+  picture.shadow_rays = result.shadow_rays;
+  picture.paths = result.paths;
+  picture.overflows = result.overflows;
+  picture.cut_paths = result.cut_paths;
+  picture.cut_share = result.cut_share;
+  picture.samples = result.samples;
+  picture.most_samples = result.most_samples;
+  picture.pixels_without_samples = result.pixels_without_samples;
+  picture.seconds = result.seconds;
+  picture.interrupted = result.interrupted;
+}
+
 PythonPicture render(const PythonScene& scene, const RenderOptions& options,
                      const nb::object& callback, bool wants_pictures) {
   PythonPicture picture;
@@ -184,23 +201,13 @@ PythonPicture render(const PythonScene& scene, const RenderOptions& options,
   if (!callback.is_none()) poll = [&] { return tell_progress(callback, desk); };
   run_interruptibly(
       [&](const std::atomic<bool>& stop) {
+        const std::shared_lock no_other_camera(scene.camera_gate);
         const RenderResult result =
             render_scene(path_scene, color, run, [&](const RenderProgress& progress) {
               desk.put(progress);
               return !stop;
             });
-        picture.image = result.film.to_image();
-        picture.free_paths = result.free_paths;
-        picture.shadow_rays = result.shadow_rays;
-        picture.paths = result.paths;
-        picture.overflows = result.overflows;
-        picture.cut_paths = result.cut_paths;
-        picture.cut_share = result.cut_share;
-        picture.samples = result.samples;
-        picture.most_samples = result.most_samples;
-        picture.pixels_without_samples = result.pixels_without_samples;
-        picture.seconds = result.seconds;
-        picture.interrupted = result.interrupted;
+        take_result(result, picture);
       },
       poll);
   if (poll) poll();
@@ -210,6 +217,55 @@ PythonPicture render(const PythonScene& scene, const RenderOptions& options,
                             {"freepath:samples", int64_t{picture.samples}},
                             {"freepath:tracker", settings.walk.tracker},
                             {"freepath:transmittance", settings.walk.transmittance}};
+  return picture;
+}
+
+/// A scene that is seen along given rays, for as long as it lives.
+class OwnSensor {
+ public:
+  OwnSensor(PythonScene& scene, Camera camera)
+      : lock_(scene.camera_gate),
+        scene_(scene.built.scene),
+        camera_(std::exchange(scene_.camera, std::move(camera))),
+        // Within the pixel, where rounding leads to no other one.
+        filter_(std::exchange(scene_.filter, PixelFilter(BoxFilter{0.25, 0.25}))) {}
+  OwnSensor(const OwnSensor&) = delete;
+  OwnSensor& operator=(const OwnSensor&) = delete;
+  ~OwnSensor() {
+    scene_.camera = std::move(camera_);
+    scene_.filter = std::move(filter_);
+  }
+
+ private:
+  std::unique_lock<std::shared_mutex> lock_;
+  PathScene& scene_;
+  std::optional<Camera> camera_;
+  PixelFilter filter_;
+};
+
+/// Radiance along rays, as pictures of `width` columns whose last row may have more pixels than
+/// rays: those repeat the last ray.
+PythonPicture radiance(PythonScene& scene, const RenderOptions& options, const VectorArray& origins,
+                       const VectorArray& directions, const NumberArray& t_max, int width) {
+  const RayArrays source(origins, directions, t_max);
+  const int height = static_cast<int>((source.size() + width - 1) / width);
+  std::vector<CameraRay> rays(static_cast<std::size_t>(width) * height);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i] = source.ray(std::min(i, source.size() - 1));
+  }
+  PythonPicture picture;
+  const ColorMode color = color_mode(scene, options);
+  picture.is_spectral = color == ColorMode::kSpectral;
+  picture.settings = render_settings(scene, options);
+  picture.settings.crop.reset();
+  picture.settings.buckets = {};
+  check_film_memory(PixelWindow::whole(width, height), picture.settings);
+  run_interruptibly([&](const std::atomic<bool>& stop) {
+    const OwnSensor sensor(scene, Camera(std::move(rays), width, height));
+    take_result(render_scene(scene.built.scene, color, picture.settings,
+                             [&](const RenderProgress&) { return !stop; }),
+                picture);
+  });
   return picture;
 }
 
@@ -307,6 +363,8 @@ void bind_rendering(nb::module_& module) {
           },
           nb::arg("exposure"), nb::arg("view"));
   module.def("png_of_pixels", &png_of_pixels, nb::arg("pixels"));
+  module.def("radiance", &radiance, nb::arg("scene"), nb::arg("options"), nb::arg("origins"),
+             nb::arg("directions"), nb::arg("t_max"), nb::arg("width"));
   module.def("render", &render, nb::arg("scene"), nb::arg("options"), nb::arg("callback").none(),
              nb::arg("wants_pictures"));
 }

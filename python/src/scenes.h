@@ -1,7 +1,7 @@
 #pragma once
 /// @file A scene as Python holds it.
 
-#include <optional>
+#include <shared_mutex>
 
 #include "freepath/scene/assembly/scene_builder.h"
 #include "freepath/scene/surroundings.h"
@@ -12,6 +12,8 @@ namespace freepath::python {
 struct PythonScene {
   BuiltScene built;
   bool is_of_file = false;  ///< Whether it has settings of its own for its picture.
+  /// Held by those who render; alone by one who has put another camera into the scene.
+  mutable std::shared_mutex camera_gate;
 };
 
 }  // namespace freepath::python

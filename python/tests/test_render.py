@@ -229,6 +229,37 @@ def test_scattering_limits_are_told_of():
         fp.render(scene, spp=4, max_scatterings=2)
 
 
+def test_radiance_along_rays_of_ones_own_is_that_of_the_camera(cloud):
+    """The rays of an orthographic camera, in constant light and a medium that only absorbs and glows:
+    L = L_e (1 - T) + T."""
+    medium = fp.Medium(fp.Component(cloud, sigma_s=0, sigma_a=1, emission=[2, 3, 4]))
+    scene = fp.Scene.around(medium, environment=1.0)
+    origins = np.stack(np.meshgrid(np.linspace(0, 4, 30), np.linspace(0, 5, 70), [-3.0]), -1)[:, :, 0]
+    before = fp.render(scene, spp=1).image.copy()
+    seen = fp.radiance(scene, origins, [0, 0, 2], spp=4096, interpolation="trilinear")
+    assert seen.mean.shape == seen.error.shape == (70, 30, 3)
+    through = fp.transmittance(
+        medium, origins, [0, 0, 1], estimator="regular", samples=1, interpolation="trilinear"
+    ).mean
+    if through.ndim == 2:
+        through = through[..., None]
+    expected = np.array([2.0, 3, 4]) * (1 - through) + through
+    z = (seen.mean - expected) / np.maximum(seen.error, 1e-6)
+    assert np.abs(z).max() < 6 and 0.8 < z.std() < 1.2
+    assert np.array_equal(fp.render(scene, spp=1).image, before)  # the camera is back
+
+
+def test_rays_get_the_same_whatever_else_is_asked(cloud):
+    scene = fp.Scene.around(cloud)
+    origins = np.random.default_rng(1).random((1500, 3)) * 4
+    everything = fp.radiance(scene, origins, [0, 1, 0], spp=2, threads=1)
+    again = fp.radiance(scene, origins, [0, 1, 0], spp=2, threads=2)
+    assert np.array_equal(everything.mean, again.mean)
+    assert fp.radiance(scene, np.empty((0, 3)), [0, 1, 0]).mean.shape == (0, 3)
+    with pytest.raises(fp.Error, match="ray 1: its direction"):
+        fp.radiance(scene, [0, 0, 0], [[0, 1.0, 0], [0, 0, 0]])
+
+
 BAD_SCENES = {
     "camera": (dict(camera="fisheye"), "perspective, orthographic, spherical"),
     "size": (dict(size=(0, 10)), "width: 0"),
