@@ -60,18 +60,21 @@ NB_MODULE(_freepath, module) {
   nb::set_leak_warnings(false);
   module.doc() = "The library's facade for arrays; freepath is the module to import.";
   // For as long as the process lives, as the translator does.
-  static PyObject* const error_type = PyErr_NewExceptionWithDoc(
+  PyObject* const error_type = PyErr_NewExceptionWithDoc(
       "freepath.Error",
       "Bad input or a failed operation: the message says what is wrong, where, and what to do.",
       PyExc_ValueError, nullptr);
   module.attr("Error") = nb::borrow(error_type);
-  nb::register_exception_translator([](const std::exception_ptr& thrown, void* /*payload*/) {
-    try {
-      std::rethrow_exception(thrown);
-    } catch (const Error& error) {
-      PyErr_SetString(error_type, python::with_arguments(error.what()).c_str());
-    }
-  });
+  nb::register_exception_translator(
+      [](const std::exception_ptr& thrown, void* type) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (const Error& error) {
+          PyErr_SetString(static_cast<PyObject*>(type),
+                          python::with_arguments(error.what()).c_str());
+        }
+      },
+      error_type);
   module.attr("version") = std::string(version());
   module.attr("max_channels") = kMaxChannels;
   python::bind_methods(module);

@@ -38,6 +38,9 @@ def test_there_are_trackers_and_estimators_to_test():
 def flights(draw):
     """A grid and a ray that passes through it, from a point in or around it."""
     values = draw(grids)
+    # Coarse ones have super-voxels whose densities are above 0 everywhere: what controls are made of.
+    for axis in range(3):
+        values = values.repeat(draw(st.sampled_from([1, 1, 7])), axis)
     size = np.array(draw(st.tuples(numbers, numbers, numbers)), float)
     size *= 3 / (size * values.shape).max()
     grid = Grid(values, size, draw(st.tuples(*[st.sampled_from([0.0, -2.5, 40.0])] * 3)))
@@ -47,12 +50,20 @@ def flights(draw):
     return values, grid, start, direction
 
 
+def coarse_grid():
+    """A box of 3 x 3 x 3 with densities from 0.25 to 1.25 that change every 8 voxels."""
+    values = np.random.default_rng(3).random((4, 4, 4)).astype(np.float32) + 0.25
+    values = values.repeat(8, 0).repeat(8, 1).repeat(8, 2)
+    return Grid(values, np.full(3, 3 / 32), np.zeros(3)), values
+
+
 def medium_of(values, grid, sigma_s, sigma_a, scale=1.0):
     field = fp.Field.from_array(values, voxel_size=grid.size, origin=grid.origin)
     return fp.Medium(
         fp.Component(
             field, sigma_s=np.multiply(scale, sigma_s), sigma_a=np.multiply(scale, sigma_a)
-        )
+        ),
+        super_voxel=4,
     )
 
 
@@ -128,13 +139,20 @@ def test_free_paths_follow_their_law_in_color(tracker, flight, seed):
 @pytest.mark.parametrize("tracker", TRACKERS)
 def test_an_error_of_one_percent_is_noticed(tracker):
     """The same test, of a medium that is denser by a hundredth than what it is compared with."""
-    values = np.random.default_rng(3).random((4, 4, 4)).astype(np.float32) + 0.25
-    grid = Grid(values, np.full(3, 0.75), np.zeros(3))
-    ray = [-1, 1.4, 1.6], [1, 0, 0], tracker, 0.8, 0.2, 2_000_000, 11
+    grid, values = coarse_grid()
+    ray = [-1, 1.4, 1.6], [1, 0, 0], tracker, 0.8, 0.2, 1_000_000, 11
     how = {"interpolation": interpolation_of(tracker)}
     right = differences(medium_of(values, grid, 0.8, 0.2), grid, *ray, **how)
     wrong = differences(medium_of(values, grid, 0.8, 0.2, 1.01), grid, *ray, **how)
     assert np.abs(right).max() < LARGEST_Z < np.abs(wrong).max()
+
+
+@pytest.mark.parametrize("tracker", ["decomposition", "weighted-decomposition", "spectral-decomposition"])
+def test_controls_take_part(tracker):
+    grid, values = coarse_grid()
+    medium = medium_of(values, grid, 0.8, 0.2)
+    paths = fp.sample_free_paths(medium, [-1, 1.4, 1.6], np.tile([1.0, 0, 0], (1000, 1)), tracker=tracker)
+    assert paths.statistics["control_collisions"] > 100
 
 
 @pytest.mark.parametrize("estimator", ESTIMATORS)
