@@ -253,7 +253,7 @@ def radiance(
     rays = Rays(origins, directions, np.inf)
     count = len(rays.origins)
     if count == 0:
-        return Estimate(*(np.empty((*rays.shape, 3)) for _ in range(2)))
+        return Estimate(np.empty((*rays.shape, 3)), np.empty((*rays.shape, 3)))
     width = min(count, _ROW)
     core = _freepath.radiance(
         scene._core, options, rays.origins, rays.directions, rays.t_max, width

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _freepath
 from ._arrays import Rays, as_count
 from ._field import Field
+from ._freepath import Error
 from ._medium import Component, Medium, as_medium
 
 _MediumLike = Medium | Component | Field | Iterable[Component]
@@ -139,7 +140,7 @@ def sample_free_paths(
             threads_of(threads),
         )
     )
-    is_scalar = medium.channels == 1 or isinstance(channels, int)
+    is_scalar = medium.channels == 1 or isinstance(channels, (int, np.integer))
     return FreePaths(
         distance=rays.shaped(distance, is_scalar),
         event=rays.shaped(event, is_scalar),
@@ -206,7 +207,7 @@ def transmittance(
         _channel_list(channels),
         threads_of(threads),
     )
-    is_scalar = medium.channels == 1 or isinstance(channels, int)
+    is_scalar = medium.channels == 1 or isinstance(channels, (int, np.integer))
     return Estimate(rays.shaped(mean, is_scalar), rays.shaped(error, is_scalar))
 
 
@@ -240,6 +241,8 @@ def threads_of(threads: int) -> int:
 def _channel_list(channels: int | Sequence[int] | None) -> list[int]:
     if channels is None:
         return []
-    if isinstance(channels, int):
-        channels = (channels,)
+    if isinstance(channels, (int, np.integer)):
+        channels = (int(channels),)
+    if len(channels) == 0:
+        raise Error("channels: none is named; give None for all of them")
     return [as_count(channel, "channels", 0, _freepath.max_channels - 1) for channel in channels]

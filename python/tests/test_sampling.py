@@ -242,7 +242,7 @@ def test_shapes_are_those_of_the_rays(cloud):
     assert paths.distance.shape == paths.event.shape == paths.lookups.shape == (4, 7)
     assert paths.weight.shape == (4, 7, 3)
     assert fp.sample_free_paths(cloud, [0, 2, 3], directions).weight.shape == (4, 7)
-    assert fp.sample_free_paths(color, [0, 2, 3], [1, 0, 0], channels=1).weight.shape == ()
+    assert fp.sample_free_paths(color, [0, 2, 3], [1, 0, 0], channels=np.int64(1)).weight.shape == ()
     assert fp.sample_free_paths(color, [0, 2, 3], [1, 0, 0], tracker="spectral", channels=[2, 0]).weight.shape == (2,)
     assert fp.sample_free_paths(cloud, np.empty((0, 3)), [1, 0, 0]).distance.shape == (0,)
     assert fp.transmittance(cloud, np.empty((0, 3)), [1, 0, 0]).mean.shape == (0,)
@@ -336,6 +336,7 @@ BAD = {
     "simd": (dict(origins=[0, 0, 0], directions=X, simd="mmx"), "mmx"),
     "seed": (dict(origins=[0, 0, 0], directions=X, seed=-1), "seed"),
     "channel": (dict(origins=[0, 0, 0], directions=X, channels=3), "channel 3"),
+    "no channel": (dict(origins=[0, 0, 0], directions=X, channels=[]), "None for all"),
     "threads": (dict(origins=[0, 0, 0], directions=X, threads=-1), "threads"),
 }
 
