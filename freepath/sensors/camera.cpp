@@ -254,15 +254,13 @@ Camera::Camera(const CameraModel& model, const Matrix4d& world_from_camera, int 
 Camera::Camera(const View& view, int width, int height)
     : Camera(pinhole(view, width, height), world_from_camera(view), width, height) {}
 
-Camera::Camera(std::vector<CameraRay> rays, int width, int height)
-    : width_(width),
-      height_(height),
-      rays_(Given{std::make_shared<const std::vector<CameraRay>>(std::move(rays)), width, height}) {
+Camera Camera::of_rays(std::vector<CameraRay> rays, int width, int height) {
   check_film(width, height);
-  const std::size_t count = std::get<Given>(rays_).rays->size();
-  if (count != static_cast<std::size_t>(width) * height) {
-    fail("there are {} rays for {} x {} pixels; give one for each", count, width, height);
+  if (rays.size() != static_cast<std::size_t>(width) * height) {
+    fail("there are {} rays for {} x {} pixels; give one for each", rays.size(), width, height);
   }
+  return Camera(
+      Given{std::make_shared<const std::vector<CameraRay>>(std::move(rays)), width, height});
 }
 
 CameraRay Camera::Given::ray(float film_x, float film_y) const {

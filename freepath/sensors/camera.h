@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -107,7 +108,7 @@ class Camera {
   /// for. It has no direction that is up: (0, 0, 1) stands for one.
   /// @param rays as many as pixels; directions are unit vectors
   /// @throws Error for another number of rays, or a film without pixels
-  Camera(std::vector<CameraRay> rays, int width, int height);
+  static Camera of_rays(std::vector<CameraRay> rays, int width, int height);
 
   /// The ray through a point of the film and a point of the lens. (0, 0) is the upper left corner
   /// of the whole film, x runs to the right, y down, the centre of the first pixel is (0.5, 0.5)
@@ -177,6 +178,8 @@ class Camera {
     int width, height;
   };
   using Rays = std::variant<Projective, Spherical, Given>;
+  explicit Camera(Given given)
+      : width_(given.width), height_(given.height), rays_(std::move(given)) {}
   static Rays make_rays(const CameraModel& model, const Matrix4d& matrix, int width, int height);
 
   int width_, height_;

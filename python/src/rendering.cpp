@@ -261,7 +261,7 @@ PythonPicture radiance(PythonScene& scene, const RenderOptions& options, const V
   picture.settings.buckets = {};
   check_film_memory(PixelWindow::whole(width, height), picture.settings);
   run_interruptibly([&](const std::atomic<bool>& stop) {
-    const OwnSensor sensor(scene, Camera(std::move(rays), width, height));
+    const OwnSensor sensor(scene, Camera::of_rays(std::move(rays), width, height));
     take_result(render_scene(scene.built.scene, color, picture.settings,
                              [&](const RenderProgress&) { return !stop; }),
                 picture);
