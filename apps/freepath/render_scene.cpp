@@ -37,27 +37,16 @@ std::vector<std::string> outputs_of(const ScenePlan& plan, const BuiltScene& bui
 }  // namespace
 
 RenderSettings settle(const ScenePlan& plan, const BuiltScene& built) {
-  RenderSettings settings = plan.settings;
-  const PictureSettings& picture = built.picture;
-  settings.samples = plan.samples.value_or(settings.time_limit > 0 ? 0 : picture.samples);
-  settings.max_scatterings = plan.max_scatterings.value_or(picture.max_scatterings);
-  WalkSettings& walk = settings.walk;
-  walk.seed = plan.seed.value_or(picture.seed);
-  walk.tracker = plan.tracker.value_or(picture.tracker);
-  if (walk.tracker.empty() || is_automatic(walk.tracker)) {
-    walk.tracker = standard_tracker(built.scene);
-  }
-  walk.tracker = to_string(parse_method(walk.tracker, tracker_infos()), tracker_infos());
-  settings.chooses_transmittance = !plan.transmittance && picture.transmittance.empty();
-  walk.transmittance =
-      plan.transmittance.value_or(picture.transmittance.empty() ? "ratio" : picture.transmittance);
-  walk.transmittance =
-      to_string(parse_method(walk.transmittance, transmittance_infos()), transmittance_infos());
-  settings.buckets = picture.buckets;
-  settings.crop = plan.film.crop ? plan.film.crop : picture.crop;
-  walk.interpolation =
-      plan.interpolation.value_or(picture.interpolation.value_or(walk.interpolation));
-  return settings;
+  return settle_settings(built,
+                         {.samples = plan.samples,
+                          .seed = plan.seed,
+                          .max_scatterings = plan.max_scatterings,
+                          .tracker = plan.tracker,
+                          .transmittance = plan.transmittance,
+                          .interpolation = plan.interpolation,
+                          .crop = plan.film.crop,
+                          .layers = plan.film.layers},
+                         plan.settings);
 }
 
 bool is_scene_file(const std::string& file) {

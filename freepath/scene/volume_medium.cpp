@@ -102,7 +102,7 @@ double length_of(const Medium& medium, const WalkPart& part) {
   return std::min(box.size().length(), medium.world_bounds().size().length());
 }
 
-void check_optical_depth(const Medium& medium, const WalkPart& medium_part) {
+void check_depth_of_part(const Medium& medium, const WalkPart& medium_part) {
   const std::vector<Component>& components = medium.components();
   const std::vector<float>& maxima = medium_part.cells.maxima;
   const double length = length_of(medium, medium_part);
@@ -185,8 +185,12 @@ VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel, const Per
          components.size(), Medium::kMaxComponents);
   }
   result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
-  for (const WalkPart& part : result.medium->parts()) check_optical_depth(*result.medium, part);
+  check_optical_depth(*result.medium);
   return result;
+}
+
+void check_optical_depth(const Medium& medium) {
+  for (const WalkPart& part : medium.parts()) check_depth_of_part(medium, part);
 }
 
 bool is_empty(const Medium& medium) {

@@ -30,6 +30,10 @@ struct VolumeMedium {
 VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel,
                          const PeriodicSides& sides = {});
 
+/// Checks that single precision tells the tentative collisions of a walk through a medium apart.
+/// @throws Error, naming the densest grid, for an optical depth across it that is too large
+void check_optical_depth(const Medium& medium);
+
 /// Whether there is nothing in a medium: its densities are 0 everywhere.
 bool is_empty(const Medium& medium);
 

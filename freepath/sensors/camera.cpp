@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "freepath/base/error.h"
 #include "freepath/base/octahedral.h"
@@ -256,7 +257,23 @@ Camera::Camera(const CameraModel& model, const Matrix4d& world_from_camera, int 
 Camera::Camera(const View& view, int width, int height)
     : Camera(pinhole(view, width, height), world_from_camera(view), width, height) {}
 
+Camera Camera::of_rays(std::vector<CameraRay> rays, int width, int height) {
+  check_film(width, height);
+  if (rays.size() != static_cast<std::size_t>(width) * height) {
+    fail("there are {} rays for {} x {} pixels; give one for each", rays.size(), width, height);
+  }
+  return Camera(
+      Given{std::make_shared<const std::vector<CameraRay>>(std::move(rays)), width, height});
+}
+
+CameraRay Camera::Given::ray(float film_x, float film_y) const {
+  const int column = std::clamp(static_cast<int>(film_x), 0, width - 1);
+  const int row = std::clamp(static_cast<int>(film_y), 0, height - 1);
+  return (*rays)[static_cast<std::size_t>(row) * width + column];
+}
+
 Vec3d Camera::up() const {
+  if (std::holds_alternative<Given>(rays_)) return {0, 0, 1};
   if (const auto* camera = std::get_if<Projective>(&rays_)) return -camera->step_y;
   return Vec3d(std::get<Spherical>(rays_).up);
 }
@@ -265,6 +282,7 @@ bool Camera::is_mirrored() const {
   if (const auto* camera = std::get_if<Projective>(&rays_)) {
     return camera->step_x.cross(-camera->step_y).dot(Vec3d(camera->ahead)) > 0;
   }
+  if (std::holds_alternative<Given>(rays_)) return false;
   const auto& camera = std::get<Spherical>(rays_);
   return camera.right.cross(camera.up).dot(camera.ahead) > 0;
 }
@@ -299,6 +317,7 @@ CameraRay Camera::ray(float film_x, float film_y, float lens_u, float lens_v) co
   if (const auto* camera = std::get_if<Projective>(&rays_)) {
     return camera->ray(film_x, film_y, lens_u, lens_v);
   }
+  if (const auto* camera = std::get_if<Given>(&rays_)) return camera->ray(film_x, film_y);
   return std::get_if<Spherical>(&rays_)->ray(film_x, film_y);
 }
 

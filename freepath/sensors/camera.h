@@ -5,8 +5,11 @@
 /// Camera space has x to the right, y up and z ahead; it is left-handed. A transform to the world
 /// that keeps the handedness therefore shows the world mirrored, as it does in pbrt.
 
+#include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "freepath/base/vector.h"
 
@@ -101,6 +104,11 @@ class Camera {
   /// @throws Error, too, if `from` and `at` are the same or beyond 1e30, or `up` is parallel to the
   ///   line of sight
   Camera(const View& view, int width, int height);
+  /// A sensor of one's own: a ray for each pixel, row by row, whatever point of the pixel is asked
+  /// for. It has no direction that is up: (0, 0, 1) stands for one.
+  /// @param rays as many as pixels; directions are unit vectors
+  /// @throws Error for another number of rays, or a film without pixels
+  static Camera of_rays(std::vector<CameraRay> rays, int width, int height);
 
   /// The ray through a point of the film and a point of the lens. (0, 0) is the upper left corner
   /// of the whole film, x runs to the right, y down, the centre of the first pixel is (0.5, 0.5)
@@ -171,7 +179,15 @@ class Camera {
     Vec3f right, up, ahead;
     float per_width, per_height;
   };
-  using Rays = std::variant<Projective, Spherical>;
+  struct Given {
+    CameraRay ray(float film_x, float film_y) const;
+
+    std::shared_ptr<const std::vector<CameraRay>> rays;
+    int width, height;
+  };
+  using Rays = std::variant<Projective, Spherical, Given>;
+  explicit Camera(Given given)
+      : width_(given.width), height_(given.height), rays_(std::move(given)) {}
   static Rays make_rays(const CameraModel& model, const Matrix4d& matrix, int width, int height);
 
   int width_, height_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "tests/expect_near.h"
@@ -116,6 +117,20 @@ TEST(FrameBox, RefusesBoxesWithoutExtent) {
   EXPECT_THROW(frame_box({{1, 1, 1}, {1, 1, 1}}, UpAxis::kY, 40, 1), Error);
   EXPECT_THROW(frame_box({{0, 0, 0}, {1, 1, 1}}, UpAxis::kY, 200, 1), Error);
   EXPECT_THROW(frame_box({{0, 0, 0}, {1, 1, 1}}, UpAxis::kY, 40, 0), Error);
+}
+
+TEST(Camera, OfGivenRaysHasOneForEachPixelWhateverThePoint) {
+  std::vector<CameraRay> rays;
+  for (int i = 0; i < 6; ++i) rays.push_back({Vec3d(i, 0, 0), Vec3f(0, 0, 1)});
+  const Camera camera = Camera::of_rays(rays, 3, 2);
+  for (const float offset : {0.25F, 0.5F, 0.75F}) {
+    EXPECT_EQ(camera.ray(2 + offset, 1 + offset).origin, Vec3d(5, 0, 0));
+    EXPECT_EQ(camera.ray(0 + offset, 1 + offset).origin, Vec3d(3, 0, 0));
+  }
+  EXPECT_FALSE(camera.has_lens());
+  EXPECT_FALSE(camera.vertical_angle());
+  EXPECT_THROW(Camera::of_rays(rays, 2, 2), Error);
+  EXPECT_THROW(Camera::of_rays({}, 0, 0), Error);
 }
 
 TEST(SkyDirection, IsACompass) {

@@ -1,0 +1,380 @@
+// Rendering scenes to pictures.
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "freepath/base/error.h"
+#include "freepath/base/memory_budget.h"
+#include "freepath/base/version.h"
+#include "freepath/io/aside_file.h"
+#include "freepath/io/image.h"
+#include "freepath/io/image_aside.h"
+#include "freepath/paths/noise_target.h"
+#include "freepath/paths/renderer.h"
+#include "freepath/scene/assembly/scene_settings.h"
+#include "freepath/transport/auto_tracker.h"
+#include "python/src/arrays.h"
+#include "python/src/bindings.h"
+#include "python/src/counts.h"
+#include "python/src/interruptible.h"
+#include "python/src/ray_arrays.h"
+#include "python/src/scenes.h"
+#include "python/src/walk_options.h"
+
+namespace freepath::python {
+namespace {
+
+/// What may be said of a rendering; of the rest the scene has its say.
+struct RenderOptions {
+  WalkOptions walk;
+  std::optional<std::string> tracker, estimator, interpolation, layers, color;
+  std::optional<uint32_t> samples, max_scatterings;
+  std::optional<uint64_t> seed;
+  double time_limit = 0;
+  std::optional<double> noise;
+  std::optional<std::array<double, 4>> crop;  ///< x0, y0, x1, y1 [pixels]
+  int wavelengths = RenderSettings{}.wavelengths;
+  int threads = 0;
+  bool shadow_roulette = true;
+};
+
+/// A picture, and how it came about.
+struct PythonPicture {
+  Image image;
+  RenderSettings settings;
+  bool is_spectral = false;
+  // Of RenderResult, which has the film in it.
+  PathCounts counts;
+  uint32_t samples = 0, most_samples = 0;
+  std::size_t pixels_without_samples = 0;
+  double seconds = 0;
+  bool interrupted = false;
+};
+
+ColorMode color_mode(const PythonScene& scene, const RenderOptions& options) {
+  const std::string color = options.color.value_or(scene.is_of_file ? "spectral" : "rgb");
+  if (color == "rgb") return ColorMode::kRgb;
+  if (color == "spectral") return ColorMode::kSpectral;
+  fail("color '{}' is unknown; there are: rgb, spectral", color);
+}
+
+RenderSettings render_settings(const PythonScene& scene, const RenderOptions& options) {
+  RenderSettings settings;
+  WalkOptions walk = options.walk;
+  walk.interpolation = options.interpolation.value_or(walk.interpolation);
+  settings.walk = walk_settings(walk);
+  settings.time_limit = options.time_limit;
+  settings.wavelengths = options.wavelengths;
+  settings.threads = options.threads;
+  settings.shadow_roulette = options.shadow_roulette;
+  RenderWishes wishes{.samples = options.samples,
+                      .seed = options.seed,
+                      .max_scatterings = options.max_scatterings,
+                      .tracker = options.tracker,
+                      .transmittance = options.estimator,
+                      .interpolation = {},
+                      .crop = {},
+                      .layers = {}};
+  if (options.interpolation) wishes.interpolation = settings.walk.interpolation;
+  if (options.layers) wishes.layers = parse_layers(*options.layers);
+  if (options.crop) {
+    const auto& [x0, y0, x1, y1] = *options.crop;
+    wishes.crop = Crop{x0, y0, x1, y1, false};
+  }
+  if (scene.is_of_file) return settle_settings(scene.built, wishes, settings);
+  // Of a medium alone, what the program's standards are.
+  if (!wishes.samples && options.time_limit == 0) wishes.samples = RenderSettings{}.samples;
+  settings.samples = wishes.samples.value_or(0);
+  settings.max_scatterings = wishes.max_scatterings.value_or(settings.max_scatterings);
+  settings.crop = wishes.crop;
+  settings.layers = wishes.layers.value_or(settings.layers);
+  settings.walk.seed = wishes.seed.value_or(0);
+  const std::string tracker = wishes.tracker.value_or("delta");
+  settings.walk.tracker =
+      settle_tracker(to_string(parse_method(tracker, tracker_choices()), tracker_choices()),
+                     *scene.built.scene.media[0].medium())
+          .tracker;
+  settings.walk.transmittance =
+      to_string(parse_method(wishes.transmittance.value_or("ratio"), transmittance_infos()),
+                transmittance_infos());
+  return settings;
+}
+
+void check_film_memory(const PixelWindow& window, const RenderSettings& settings) {
+  std::size_t channels = 4 + settings.buckets.count;
+  for (const LayerInfo& info : layer_infos()) {
+    if (settings.layers.has(info.layer)) channels += info.channels.size();
+  }
+  const auto bytes = static_cast<double>(Film::bytes_per_pixel(settings.layers, settings.buckets) +
+                                         channels * sizeof(float));
+  check_memory_present("the picture", fmt::format("{} x {} pixels", window.width, window.height),
+                       bytes * window.width * window.height);
+}
+
+/// What the rendering threads tell the one that waits.
+class ProgressDesk {
+ public:
+  /// @param samples of each pixel that there will be, 0 if that is not known
+  /// @param wants_picture whether to keep the picture of each pass that was asked for
+  ProgressDesk(uint32_t samples, bool wants_picture)
+      : wants_picture_(wants_picture), progress_{.samples_total = static_cast<double>(samples)} {}
+
+  void put(const RenderProgress& progress) {
+    const std::lock_guard lock(gate_);
+    progress_ = progress;
+  }
+  void put(const Film& film) {
+    const std::lock_guard lock(gate_);
+    if (wants_picture_ && !picture_) picture_ = film.to_image({});
+  }
+  std::pair<RenderProgress, std::optional<Image>> take() {
+    const std::lock_guard lock(gate_);
+    return {progress_, std::exchange(picture_, std::nullopt)};
+  }
+
+ private:
+  std::mutex gate_;
+  bool wants_picture_;
+  RenderProgress progress_;
+  std::optional<Image> picture_;
+};
+
+/// Calls callback(samples done, samples in all, seconds, picture of the last pass or None).
+bool tell_progress(const nb::object& callback, ProgressDesk& desk) {
+  auto [progress, picture] = desk.take();
+  nb::object pixels = nb::none();
+  if (picture) {
+    const std::size_t channels = picture->channels.size();
+    pixels =
+        to_numpy(std::move(picture->values), {static_cast<std::size_t>(picture->height),
+                                              static_cast<std::size_t>(picture->width), channels});
+  }
+  const nb::object answer =
+      callback(progress.samples_done, progress.samples_total, progress.seconds, std::move(pixels));
+  return !answer.is(nb::bool_(false));
+}
+
+void take_result(const RenderResult& result, PythonPicture& picture) {
+  picture.image = result.film.to_image();
+  picture.counts = result.counts;
+  picture.samples = result.samples;
+  picture.most_samples = result.most_samples;
+  picture.pixels_without_samples = result.pixels_without_samples;
+  picture.seconds = result.seconds;
+  picture.interrupted = result.interrupted;
+}
+
+/// The number of samples that the noise takes that is asked for.
+uint32_t samples_for(const PythonScene& scene, ColorMode color, const RenderOptions& options,
+                     RenderSettings settings, const std::atomic<bool>& stop) {
+  if (!options.samples) settings.samples = 0;
+  const NoisePlan plan = plan_noise(scene.built.scene, color, settings, *options.noise,
+                                    [&](const RenderProgress&) { return !stop; });
+  if (plan.interrupted) fail("ended before it was known how many samples the noise takes");
+  return plan.samples;
+}
+
+PythonPicture render(const PythonScene& scene, const RenderOptions& options,
+                     const nb::object& callback, bool wants_pictures) {
+  PythonPicture picture;
+  const ColorMode color = color_mode(scene, options);
+  picture.is_spectral = color == ColorMode::kSpectral;
+  picture.settings = render_settings(scene, options);
+  RenderSettings& settings = picture.settings;
+  const PathScene& path_scene = scene.built.scene;
+  if (!picture.is_spectral) settings.buckets = {};
+  check_film_memory(
+      pixel_window(settings.crop, path_scene.camera->width(), path_scene.camera->height()),
+      settings);
+  ProgressDesk desk(settings.samples, wants_pictures);
+  RenderSettings run = settings;
+  run.on_pass = [&](const Film& film) { desk.put(film); };
+  Poll poll;
+  if (!callback.is_none()) poll = [&] { return tell_progress(callback, desk); };
+  run_interruptibly(
+      [&](const std::atomic<bool>& stop) {
+        const std::shared_lock no_other_camera(scene.camera_gate);
+        if (options.noise) settings.samples = run.samples = samples_for(scene, color, options, run, stop);
+        const RenderResult result =
+            render_scene(path_scene, color, run, [&](const RenderProgress& progress) {
+              desk.put(progress);
+              return !stop;
+            });
+        take_result(result, picture);
+      },
+      poll);
+  if (poll) poll();
+  picture.image.metadata = {{"Software", fmt::format("freepath {}", version())},
+                            {"freepath:version", std::string(version())},
+                            {"freepath:seed", static_cast<int64_t>(settings.walk.seed)},
+                            {"freepath:samples", int64_t{picture.samples}},
+                            {"freepath:tracker", settings.walk.tracker},
+                            {"freepath:transmittance", settings.walk.transmittance}};
+  return picture;
+}
+
+/// A scene that is seen along given rays, for as long as it lives.
+class OwnSensor {
+ public:
+  OwnSensor(PythonScene& scene, Camera camera)
+      : lock_(scene.camera_gate),
+        scene_(scene.built.scene),
+        camera_(std::exchange(scene_.camera, std::move(camera))),
+        // Within the pixel, where rounding leads to no other one.
+        filter_(std::exchange(scene_.filter, PixelFilter(BoxFilter{0.25, 0.25}))) {}
+  OwnSensor(const OwnSensor&) = delete;
+  OwnSensor& operator=(const OwnSensor&) = delete;
+  ~OwnSensor() {
+    scene_.camera = std::move(camera_);
+    scene_.filter = std::move(filter_);
+  }
+
+ private:
+  std::unique_lock<std::shared_mutex> lock_;
+  PathScene& scene_;
+  std::optional<Camera> camera_;
+  PixelFilter filter_;
+};
+
+/// Radiance along rays, as pictures of `width` columns whose last row may have more pixels than
+/// rays: those repeat the last ray.
+PythonPicture radiance(PythonScene& scene, const RenderOptions& options, const VectorArray& origins,
+                       const VectorArray& directions, const NumberArray& t_max, int width) {
+  const RayArrays source(origins, directions, t_max);
+  const int height = static_cast<int>((source.size() + width - 1) / width);
+  std::vector<CameraRay> rays(static_cast<std::size_t>(width) * height);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i] = source.ray(std::min(i, source.size() - 1));
+  }
+  PythonPicture picture;
+  const ColorMode color = color_mode(scene, options);
+  picture.is_spectral = color == ColorMode::kSpectral;
+  picture.settings = render_settings(scene, options);
+  picture.settings.crop.reset();
+  picture.settings.buckets = {};
+  check_film_memory(PixelWindow::whole(width, height), picture.settings);
+  run_interruptibly([&](const std::atomic<bool>& stop) {
+    const OwnSensor sensor(scene, Camera::of_rays(std::move(rays), width, height));
+    take_result(render_scene(scene.built.scene, color, picture.settings,
+                             [&](const RenderProgress&) { return !stop; }),
+                picture);
+  });
+  return picture;
+}
+
+nb::dict statistics_of(const PythonPicture& picture) {
+  nb::dict stats;
+  stats["samples"] = picture.samples;
+  stats["most_samples"] = picture.most_samples;
+  stats["pixels_without_samples"] = picture.pixels_without_samples;
+  stats["paths"] = picture.counts.paths;
+  stats["overflows"] = picture.counts.overflows;
+  stats["cut_paths"] = picture.counts.cut_paths;
+  stats["cut_share"] = picture.counts.cut_share();
+  stats["seconds"] = picture.seconds;
+  stats["interrupted"] = picture.interrupted;
+  stats["max_scatterings"] = picture.settings.max_scatterings;
+  stats["seed"] = picture.settings.walk.seed;
+  stats["tracker"] = picture.settings.walk.tracker;
+  stats["estimator"] = picture.settings.walk.transmittance;
+  stats["color"] = picture.is_spectral ? "spectral" : "rgb";
+  stats["free_paths"] = counts_to_python(picture.counts.free_paths);
+  stats["shadow_rays"] = counts_to_python(picture.counts.shadow_rays);
+  return stats;
+}
+
+PictureLook look_of(double exposure, const std::string& view) {
+  if (view == "standard") return {exposure, ViewTransform::kStandard};
+  if (view == "neutral") return {exposure, ViewTransform::kNeutral};
+  fail("view '{}' is unknown; there are: standard, neutral", view);
+}
+
+/// The picture's own memory: read-only, and kept by the array.
+nb::object pixels_of(const nb::handle& self) {
+  const Image& image = nb::cast<const PythonPicture&>(self).image;
+  return nb::cast(nb::ndarray<nb::numpy, const float>(
+      image.values.data(),
+      {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
+       image.channels.size()},
+      self));
+}
+
+using Pixels = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+
+/// A PNG file of linear R, G, B.
+nb::bytes png_of_pixels(const Pixels& pixels) {
+  Image image{.width = static_cast<int>(pixels.shape(1)),
+              .height = static_cast<int>(pixels.shape(0)),
+              .channels = {"R", "G", "B"}};
+  image.values.assign(pixels.data(), pixels.data() + pixels.size());
+  const std::vector<uint8_t> bytes = encode_png(image, look_of(0, "neutral"), "the picture");
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+void bind_rendering(nb::module_& module) {
+  nb::class_<RenderOptions>(module, "RenderOptions")
+      .def(nb::init<>())
+      .def_rw("walk", &RenderOptions::walk)
+      .def_rw("tracker", &RenderOptions::tracker, nb::for_setter(nb::arg("tracker").none()))
+      .def_rw("estimator", &RenderOptions::estimator, nb::for_setter(nb::arg("estimator").none()))
+      .def_rw("interpolation", &RenderOptions::interpolation,
+              nb::for_setter(nb::arg("interpolation").none()))
+      .def_rw("layers", &RenderOptions::layers, nb::for_setter(nb::arg("layers").none()))
+      .def_rw("color", &RenderOptions::color, nb::for_setter(nb::arg("color").none()))
+      .def_rw("samples", &RenderOptions::samples, nb::for_setter(nb::arg("samples").none()))
+      .def_rw("max_scatterings", &RenderOptions::max_scatterings,
+              nb::for_setter(nb::arg("max_scatterings").none()))
+      .def_rw("seed", &RenderOptions::seed, nb::for_setter(nb::arg("seed").none()))
+      .def_rw("time_limit", &RenderOptions::time_limit)
+      .def_rw("noise", &RenderOptions::noise)
+      .def_rw("crop", &RenderOptions::crop, nb::for_setter(nb::arg("crop").none()))
+      .def_rw("wavelengths", &RenderOptions::wavelengths)
+      .def_rw("threads", &RenderOptions::threads)
+      .def_rw("shadow_roulette", &RenderOptions::shadow_roulette);
+  nb::class_<PythonPicture>(module, "Picture")
+      .def_prop_ro("pixels", [](const nb::handle& self) { return pixels_of(self); })
+      .def_prop_ro("channels", [](const PythonPicture& self) { return self.image.channels; })
+      .def_prop_ro("statistics", &statistics_of)
+      .def(
+          "save",
+          [](const PythonPicture& self, const std::string& path, double exposure,
+             const std::string& view) {
+            const PictureLook look = look_of(exposure, view);
+            run_interruptibly([&](const std::atomic<bool>& /*stop*/) {
+              AsideFile file(path);
+              write_image(file, self.image, look);
+            });
+          },
+          nb::arg("path"), nb::arg("exposure"), nb::arg("view"))
+      .def(
+          "png",
+          [](const PythonPicture& self, double exposure, const std::string& view) {
+            const std::vector<uint8_t> bytes =
+                encode_png(self.image, look_of(exposure, view), "the picture");
+            return nb::bytes(bytes.data(), bytes.size());
+          },
+          nb::arg("exposure"), nb::arg("view"));
+  module.def("png_of_pixels", &png_of_pixels, nb::arg("pixels"));
+  module.def("radiance", &radiance, nb::arg("scene"), nb::arg("options"), nb::arg("origins"),
+             nb::arg("directions"), nb::arg("t_max"), nb::arg("width"));
+  module.def("render", &render, nb::arg("scene"), nb::arg("options"), nb::arg("callback").none(),
+             nb::arg("wants_pictures"));
+}
+
+}  // namespace freepath::python
