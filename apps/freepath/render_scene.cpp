@@ -13,7 +13,7 @@
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 #include "freepath/paths/renderer.h"
-#include "freepath/transport/auto_tracker.h"
+#include "freepath/scene/assembly/scene_settings.h"
 
 namespace freepath::program {
 namespace {

@@ -208,7 +208,8 @@ PythonPicture render(const PythonScene& scene, const RenderOptions& options,
   run_interruptibly(
       [&](const std::atomic<bool>& stop) {
         const std::shared_lock no_other_camera(scene.camera_gate);
-        if (options.noise) settings.samples = run.samples = samples_for(scene, color, options, run, stop);
+        if (options.noise)
+          settings.samples = run.samples = samples_for(scene, color, options, run, stop);
         const RenderResult result =
             render_scene(path_scene, color, run, [&](const RenderProgress& progress) {
               desk.put(progress);
