@@ -312,7 +312,7 @@ void write_film(AsideFile& file, FilmHeader header, const Film& film) {
   for (const std::span<const std::byte> block : film.sums_in_memory()) {
     put_packed(output, block, buffer);
   }
-  if (!output.end()) file.give_up("it can't be written; is the disk full?");
+  if (!output.end()) file.give_up("not all of it; is the disk full?");
   file.replace_target();
 }
 
