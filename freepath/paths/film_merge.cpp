@@ -30,9 +30,9 @@ void check_same_picture(const Part& first, const Part& part, bool average) {
   const auto compare = [&](bool is_same, std::string_view what) {
     if (reason.empty() && !is_same) reason = fmt::format("its {} are others", what);
   };
-  compare(a.window.full_width == b.window.full_width &&
-              a.window.full_height == b.window.full_height,
-          "width and height");
+  compare(
+      a.window.full_width == b.window.full_width && a.window.full_height == b.window.full_height,
+      "width and height");
   if (reason.empty()) reason = difference(a.identity, b.identity, average);
   compare(a.layers == b.layers, "layers");
   compare(a.buckets == b.buckets, "buckets of wavelengths");
