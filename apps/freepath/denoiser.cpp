@@ -43,6 +43,7 @@ std::vector<float> packed(const Image& image, const std::array<const char*, kRgb
 void put_denoised(Image& image, const std::vector<const char*>& names,
                   const std::vector<float>& denoised) {
   std::vector<int> replaced;
+  replaced.reserve(names.size());
   for (const char* name : names) replaced.push_back(find_channel(image, name).value());
   const std::size_t before = image.channels.size();
   std::vector<float> values;

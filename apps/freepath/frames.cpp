@@ -11,6 +11,7 @@
 #include <set>
 #include <system_error>
 
+#include "apps/freepath/parse.h"
 #include "apps/freepath/render_output.h"
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"

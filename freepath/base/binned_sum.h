@@ -16,21 +16,21 @@ namespace freepath {
 /// The range of numbers is cut into bins of kBits binary digits, the same for all sums. A number is
 /// split into whole multiples of the units of bins, by rounding from the highest down, which
 /// depends on the number alone; each bin is a sum of integers, hence exact. Kept are the bin of the
-/// largest magnitude so far and those right below it, `Bins` in all: a number counts with an error
-/// of at most 2^-(kBits · (Bins - 1) + 1) of the largest one, which is far below the error of a
+/// largest magnitude so far and those right below it, `kBins` in all: a number counts with an error
+/// of at most 2^-(kBits · (kBins - 1) + 1) of the largest one, which is far below the error of a
 /// mean.
 ///
 /// The bins and the number of the highest lie apart, where the caller wants them.
 ///
 /// Numbers of magnitudes from 2^-306 to 2^305, or 0; 2^29 of them at most, or 2^30 where their
 /// magnitudes are not all the largest that a bin takes.
-template <std::size_t Bins>
+template <std::size_t kBins>
 class BinnedSum {
  public:
-  using Array = std::array<int64_t, Bins>;
+  using Array = std::array<int64_t, kBins>;
   static constexpr int kBits = 34;
-  static constexpr int8_t kLowest = -9;
-  static constexpr int8_t kHighest = 8;
+  static constexpr int kLowest = -9;
+  static constexpr int kHighest = 8;
   /// `top` of a sum of nothing; its bins are 0.
   static constexpr int8_t kEmpty = kLowest;
 
@@ -38,7 +38,7 @@ class BinnedSum {
   static void add(Array& bins, int8_t& top, double number) {
     if (std::abs(number) >= kLimits[index(top)]) raise(bins, top, bin_of(number));
     double rest = number;
-    for (std::size_t i = 0; i < Bins; ++i) {
+    for (std::size_t i = 0; i < kBins; ++i) {
       const int bin = top - static_cast<int>(i);
       const double count = rounded(rest * kUnits[index(-bin)]);
       bins[i] += static_cast<int64_t>(count);
@@ -50,13 +50,13 @@ class BinnedSum {
   static void merge(Array& bins, int8_t& top, Array other, int8_t other_top) {
     if (other_top > top) raise(bins, top, other_top);
     if (top > other_top) raise(other, other_top, top);
-    for (std::size_t i = 0; i < Bins; ++i) bins[i] += other[i];
+    for (std::size_t i = 0; i < kBins; ++i) bins[i] += other[i];
   }
 
   /// The sum, rounded.
   static double value(const Array& bins, int8_t top) {
     double sum = 0;
-    for (std::size_t i = Bins; i-- > 0;) {
+    for (std::size_t i = kBins; i-- > 0;) {
       sum += static_cast<double>(bins[i]) * kUnits[index(top - static_cast<int>(i))];
     }
     return sum;
@@ -100,7 +100,7 @@ class BinnedSum {
   /// Makes room for larger numbers; the lowest bins are given up.
   static void raise(Array& bins, int8_t& top, int8_t new_top) {
     const auto by = static_cast<std::size_t>(new_top - top);
-    for (std::size_t i = Bins; i-- > 0;) bins[i] = i >= by ? bins[i - by] : 0;
+    for (std::size_t i = kBins; i-- > 0;) bins[i] = i >= by ? bins[i - by] : 0;
     top = new_top;
   }
 };

@@ -353,7 +353,7 @@ void write_film(AsideFile& file, FilmHeader header, const Film& film) {
   std::ofstream stream(file.name(), std::ios::binary);
   put_film(stream, std::move(header), film);
   stream.close();
-  if (stream.fail()) file.give_up("it can't be written; is the disk full?");
+  if (stream.fail()) file.give_up("not all of it; is the disk full?");
   file.replace_target();
 }
 

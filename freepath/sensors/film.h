@@ -177,9 +177,9 @@ class Film {
     double value(int sum) const { return Sum2::value(sums[sum], tops[sum]); }
     double square(int channel) const;
   };
-  template <std::size_t Count>
-  static constexpr std::array<int8_t, Count> filled() {
-    std::array<int8_t, Count> tops{};
+  template <std::size_t kCount>
+  static constexpr std::array<int8_t, kCount> filled() {
+    std::array<int8_t, kCount> tops{};
     tops.fill(Sum2::kEmpty);
     return tops;
   }

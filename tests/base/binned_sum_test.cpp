@@ -14,14 +14,14 @@
 namespace freepath {
 namespace {
 
-template <std::size_t Bins>
+template <std::size_t kBins>
 struct Sum {
-  typename BinnedSum<Bins>::Array bins = {};
-  int8_t top = BinnedSum<Bins>::kEmpty;
+  typename BinnedSum<kBins>::Array bins = {};
+  int8_t top = BinnedSum<kBins>::kEmpty;
 
-  void add(double number) { BinnedSum<Bins>::add(bins, top, number); }
-  void merge(const Sum& other) { BinnedSum<Bins>::merge(bins, top, other.bins, other.top); }
-  double value() const { return BinnedSum<Bins>::value(bins, top); }
+  void add(double number) { BinnedSum<kBins>::add(bins, top, number); }
+  void merge(const Sum& other) { BinnedSum<kBins>::merge(bins, top, other.bins, other.top); }
+  double value() const { return BinnedSum<kBins>::value(bins, top); }
   bool operator==(const Sum&) const = default;
 };
 
@@ -38,10 +38,10 @@ std::vector<double> numbers_of(int count, int exponents, bool are_floats) {
   return numbers;
 }
 
-template <std::size_t Bins>
+template <std::size_t kBins>
 void expect_same_in_any_order(int exponents) {
-  std::vector<double> numbers = numbers_of(1000, exponents, Bins == 2);
-  Sum<Bins> all;
+  std::vector<double> numbers = numbers_of(1000, exponents, kBins == 2);
+  Sum<kBins> all;
   for (const double number : numbers) all.add(number);
   RandomStream random(3, 1, 0, static_cast<uint32_t>(exponents));
   for (int trial = 0; trial < 50; ++trial) {
@@ -49,11 +49,11 @@ void expect_same_in_any_order(int exponents) {
       std::swap(numbers[i - 1], numbers[static_cast<std::size_t>(random.uniform() * i)]);
     }
     // In groups, merged in an order of their own.
-    std::vector<Sum<Bins>> groups(1 + trial % 9);
+    std::vector<Sum<kBins>> groups(1 + trial % 9);
     for (const double number : numbers) {
       groups[static_cast<std::size_t>(random.uniform() * groups.size())].add(number);
     }
-    Sum<Bins> merged;
+    Sum<kBins> merged;
     for (std::size_t i = groups.size(); i-- > 0;) merged.merge(groups[i]);
     ASSERT_EQ(merged, all) << exponents;
     ASSERT_EQ(std::bit_cast<uint64_t>(merged.value()), std::bit_cast<uint64_t>(all.value()));
