@@ -180,8 +180,8 @@ Matrix4d nifti_transform(const NiftiHeader& header) {
   if (header.code(places.sform) > 0) {
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 4; ++axis) {
-        matrix[axis][k] =
-            header.finite("srow", places.rows, 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis));
+        matrix[axis][k] = header.finite(
+            "srow", places.rows, 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis));
       }
     }
   } else if (header.code(places.qform) > 0) {

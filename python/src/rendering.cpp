@@ -227,10 +227,11 @@ PythonPicture render(const PythonScene& scene, const RenderOptions& options,
   return picture;
 }
 
-/// The number of samples that a noise takes.
+/// The number of samples that render() would take: 0 where the time alone says it.
 uint32_t plan_samples(const PythonScene& scene, const RenderOptions& options) {
   const ColorMode color = color_mode(scene, options);
   const RenderSettings settings = render_settings(scene, options);
+  if (!options.noise) return settings.samples;
   return result_interruptibly([&](const std::atomic<bool>& stop) {
     const std::shared_lock no_other_camera(scene.camera_gate);
     return samples_for(scene, color, options, settings, stop);
