@@ -4,13 +4,12 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
-#include <map>
 #include <string_view>
 
 #include "apps/freepath/parse.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
-#include "freepath/io/content_digest.h"
+#include "freepath/paths/film_file.h"
 
 namespace freepath::program {
 namespace {
@@ -165,41 +164,11 @@ RunPlan read_run_plan(const CLI::App& command, const RunPlanOptions& options) {
   return plan;
 }
 
-Crop tile_of(const PixelWindow& window, const Tile& tile) {
-  const auto rows = static_cast<uint32_t>(window.height);
-  if (tile.count > rows) {
-    fail("--tiles: {} tiles of {} rows of pixels; give at most as many tiles as rows", tile.count,
-         rows);
-  }
-  const auto row = [&](uint32_t number) {
-    const uint64_t first = uint64_t{rows} * number / tile.count;
-    return window.y + static_cast<double>(first);
-  };
-  return {static_cast<double>(window.x), row(tile.number - 1),
-          static_cast<double>(window.x + window.width), row(tile.number)};
-}
-
 PictureIdentity picture_identity(const RunPlan& plan, const RenderSettings& settings,
                                  std::string_view color, const InputFileLog& files) {
   PictureIdentity identity{version(), settings.walk.seed, plan.options};
-  auto& facts = identity.facts;
-  facts.emplace_back("color", color);
-  facts.emplace_back("tracker", settings.walk.tracker);
-  facts.emplace_back("transmittance",
-                     settings.walk.transmittance +
-                         (settings.chooses_transmittance ? ", exact where media allow" : ""));
-  facts.emplace_back("interpolation",
-                     fmt::format("{}", static_cast<int>(settings.walk.interpolation)));
-  facts.emplace_back("max-scatterings", std::to_string(settings.max_scatterings));
-  std::map<std::string, std::string> contents;
-  for (const std::string& file : files.names()) {
-    ContentDigest digest;
-    digest.add_file(file);
-    const std::string name = "the content of " + fs::path(file).filename().string();
-    std::string& entry = contents[name];
-    entry += (entry.empty() ? "" : " ") + digest.hex();
-  }
-  facts.insert(facts.end(), contents.begin(), contents.end());
+  identity.add_methods(settings, color);
+  identity.add_contents(files.names());
   return identity;
 }
 

@@ -11,8 +11,9 @@
 
 #include "apps/freepath/progress_bar.h"
 #include "freepath/base/input_file.h"
-#include "freepath/paths/film_file.h"
+#include "freepath/paths/picture_identity.h"
 #include "freepath/paths/renderer.h"
+#include "freepath/sensors/tile.h"
 
 namespace freepath::program {
 
@@ -23,12 +24,6 @@ struct RunPlanOptions {
   double noise = 0;
   std::string progress = "auto", seed_mode = "frame";
   bool skip_existing = false;
-};
-
-/// One of the tiles that a picture is cut into.
-struct Tile {
-  uint32_t number = 1;  ///< Counted from 1.
-  uint32_t count = 1;
 };
 
 /// What they mean.
@@ -50,10 +45,6 @@ void add_run_plan_options(CLI::App& command, RunPlanOptions& options);
 
 /// @throws Error naming the option, and for options that exclude each other
 RunPlan read_run_plan(const CLI::App& command, const RunPlanOptions& options);
-
-/// The rows of a window that a tile has, as a crop of the picture in pixels.
-/// @throws Error for more tiles than rows
-Crop tile_of(const PixelWindow& window, const Tile& tile);
 
 /// What a picture depends on: options, methods and the contents of the files that were read for it.
 /// @param color as the program spells it

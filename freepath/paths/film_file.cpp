@@ -8,9 +8,14 @@
 #include <bit>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <string_view>
+#include <span>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/base/input_file.h"
@@ -158,7 +163,7 @@ FilmHeader header_of(const Json& json) {
 /// Writes bytes and keeps their checksum.
 class Output {
  public:
-  explicit Output(const std::string& name) : stream_(name, std::ios::binary) {}
+  explicit Output(std::ostream& stream) : stream_(stream) {}
 
   void put(const void* bytes, std::size_t count) {
     stream_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
@@ -168,15 +173,10 @@ class Output {
   void put_number(T number) {
     put(&number, sizeof(number));
   }
-  /// @return whether all was written
-  bool end() {
-    put_number(static_cast<uint32_t>(checksum_));
-    stream_.close();
-    return !stream_.fail();
-  }
+  void put_checksum() { put_number(static_cast<uint32_t>(checksum_)); }
 
  private:
-  std::ofstream stream_;
+  std::ostream& stream_;
   uLong checksum_ = 0;
 };
 
@@ -193,17 +193,54 @@ void put_packed(Output& output, std::span<const std::byte> bytes, std::vector<ch
   }
 }
 
-/// Reads a film's file from its begin to its end.
+void put_film(std::ostream& stream, FilmHeader header, const Film& film) {
+  describe(header, film);
+  const std::string text = json_text(header_json(header));
+  Output output(stream);
+  output.put(kMagic.data(), kMagic.size());
+  output.put_number(static_cast<uint64_t>(text.size()));
+  output.put(text.data(), text.size());
+  std::vector<char> buffer;
+  for (const std::span<const std::byte> block : film.sums_in_memory()) {
+    put_packed(output, block, buffer);
+  }
+  output.put_checksum();
+}
+
+/// Bytes of a film, wherever they are.
+struct Source {
+  std::string name;
+  uint64_t size = 0;
+  std::function<std::size_t(uint64_t offset, std::span<std::byte> bytes)> read;
+};
+
+Source source_of_file(const std::string& path) {
+  auto file = std::make_shared<InputFile>(path, "a film");
+  return {file->name(), file->size(), [file](uint64_t offset, std::span<std::byte> bytes) {
+            return file->read(offset, bytes);
+          }};
+}
+
+/// @param memory has to outlive the source
+Source source_of_memory(std::string_view memory, const std::string& name) {
+  return {name, memory.size(), [memory](uint64_t offset, std::span<std::byte> bytes) {
+            const std::string_view piece = memory.substr(offset, bytes.size());
+            std::memcpy(bytes.data(), piece.data(), piece.size());
+            return piece.size();
+          }};
+}
+
+/// Reads a film from its begin to its end.
 class Input {
  public:
-  explicit Input(const std::string& path) : file_(path, "a film") {}
+  explicit Input(Source source) : source_(std::move(source)) {}
 
   [[noreturn]] void damaged(std::string_view reason) const {
-    fail("{}: {}; is it a film that freepath has written, whole?", file_.name(), reason);
+    fail("{}: {}; is it a film that freepath has written, whole?", source_.name, reason);
   }
 
   void take(std::span<std::byte> bytes) {
-    if (file_.read(offset_, bytes) != bytes.size()) damaged("it ends too early");
+    if (source_.read(offset_, bytes) != bytes.size()) damaged("it ends too early");
     offset_ += bytes.size();
     checksum_ = crc32_z(checksum_, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   }
@@ -216,19 +253,19 @@ class Input {
 
   FilmHeader take_header() {
     std::array<char, kMagic.size()> magic{};
-    if (file_.size() < magic.size()) damaged("it is no film");
+    if (source_.size < magic.size()) damaged("it is no film");
     take(std::as_writable_bytes(std::span(magic)));
     const std::string_view begin(magic.data(), magic.size());
     if (begin != kMagic) {
       constexpr std::string_view kAnyVersion = kMagic.substr(0, kMagic.find('1'));
       if (begin.starts_with(kAnyVersion)) {
         fail("{}: is of another version of films' files; write it again by this freepath",
-             file_.name());
+             source_.name);
       }
       damaged("it is no film");
     }
     const auto size = take_number<uint64_t>();
-    if (size > std::min(kLargestHeader, file_.size())) damaged("its header is too large");
+    if (size > std::min(kLargestHeader, source_.size)) damaged("its header is too large");
     std::string text(size, '\0');
     take(std::as_writable_bytes(std::span(text)));
     try {
@@ -259,67 +296,19 @@ class Input {
   void end() {
     const auto expected = static_cast<uint32_t>(checksum_);
     if (take_number<uint32_t>() != expected) damaged("its checksum is another one");
-    if (offset_ != file_.size()) damaged("there is more behind its end");
+    if (offset_ != source_.size) damaged("there is more behind its end");
   }
 
-  uint64_t size() const { return file_.size(); }
+  uint64_t size() const { return source_.size; }
 
  private:
-  InputFile file_;
+  Source source_;
   uint64_t offset_ = 0;
   uLong checksum_ = 0;
 };
 
-}  // namespace
-
-std::string difference(const PictureIdentity& first, const PictureIdentity& second, bool any_seed) {
-  if (first.version != second.version) {
-    return fmt::format("it is by freepath {} and not {}", second.version, first.version);
-  }
-  if (!any_seed && first.seed != second.seed) {
-    return fmt::format("its seed is {} and not {}", second.seed, first.seed);
-  }
-  const auto value_in = [](const PictureIdentity& identity, const std::string& name) {
-    const auto found = std::find_if(identity.facts.begin(), identity.facts.end(),
-                                    [&](const auto& fact) { return fact.first == name; });
-    return found == identity.facts.end() ? std::string("not given") : found->second;
-  };
-  for (const PictureIdentity* one : {&first, &second}) {
-    for (const auto& [name, value] : one->facts) {
-      const std::string a = value_in(first, name);
-      const std::string b = value_in(second, name);
-      if (a != b) return fmt::format("{} is {} and not {}", name, b, a);
-    }
-  }
-  return {};
-}
-
-bool is_film_file(const std::string& path) { return path.ends_with(kFilmExtension); }
-
-void write_film(AsideFile& file, FilmHeader header, const Film& film) {
-  header.window = film.window();
-  header.layers = film.layers();
-  header.buckets = film.buckets();
-  header.chromaticities = film.chromaticities();
-  header.first_sample = film.first_sample();
-  header.samples = film.sample_counts();
-  const std::string text = json_text(header_json(header));
-  Output output(file.name());
-  output.put(kMagic.data(), kMagic.size());
-  output.put_number(static_cast<uint64_t>(text.size()));
-  output.put(text.data(), text.size());
-  std::vector<char> buffer;
-  for (const std::span<const std::byte> block : film.sums_in_memory()) {
-    put_packed(output, block, buffer);
-  }
-  if (!output.end()) file.give_up("not all of it; is the disk full?");
-  file.replace_target();
-}
-
-FilmHeader read_film_header(const std::string& path) { return Input(path).take_header(); }
-
-FilmFile read_film(const std::string& path) {
-  Input input(path);
+/// Takes all of a film.
+FilmFile take_film(Input input) {
   FilmHeader header = input.take_header();
   // Packed sums are smaller by a factor that is bounded, so that memory is too.
   constexpr double kMostPacked = 1000;
@@ -345,6 +334,43 @@ FilmFile read_film(const std::string& path) {
     input.damaged(error.what());
   }
   return result;
+}
+
+}  // namespace
+
+bool is_film_file(const std::string& path) { return path.ends_with(kFilmExtension); }
+
+void describe(FilmHeader& header, const Film& film) {
+  header.window = film.window();
+  header.layers = film.layers();
+  header.buckets = film.buckets();
+  header.chromaticities = film.chromaticities();
+  header.first_sample = film.first_sample();
+  header.samples = film.sample_counts();
+}
+
+void write_film(AsideFile& file, FilmHeader header, const Film& film) {
+  std::ofstream stream(file.name(), std::ios::binary);
+  put_film(stream, std::move(header), film);
+  stream.close();
+  if (stream.fail()) file.give_up("not all of it; is the disk full?");
+  file.replace_target();
+}
+
+std::string film_bytes(FilmHeader header, const Film& film) {
+  std::ostringstream stream;
+  put_film(stream, std::move(header), film);
+  return std::move(stream).str();
+}
+
+FilmHeader read_film_header(const std::string& path) {
+  return Input(source_of_file(path)).take_header();
+}
+
+FilmFile read_film(const std::string& path) { return take_film(Input(source_of_file(path))); }
+
+FilmFile film_of_bytes(std::string_view bytes, const std::string& name) {
+  return take_film(Input(source_of_memory(bytes, name)));
 }
 
 }  // namespace freepath

@@ -5,31 +5,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
+#include <string_view>
 
 #include "freepath/io/aside_file.h"
 #include "freepath/paths/path_job.h"
+#include "freepath/paths/picture_identity.h"
 #include "freepath/sensors/film.h"
 
 namespace freepath {
-
-/// What a picture depends on, bit by bit, besides its samples' numbers: films can be merged where
-/// it is the same.
-struct PictureIdentity {
-  std::string version;  ///< Of freepath.
-  uint64_t seed = 0;
-  /// Names and values: options that were given, contents of files (ContentDigest), the methods.
-  std::vector<std::pair<std::string, std::string>> facts;
-
-  bool operator==(const PictureIdentity&) const = default;
-};
-
-/// Says in what the second of two pictures differs from the first: "seed is 2 and not 1"; empty
-/// where it doesn't.
-/// @param any_seed whether their seeds may differ
-std::string difference(const PictureIdentity& first, const PictureIdentity& second,
-                       bool any_seed = false);
 
 /// What a film's file says besides sums.
 struct FilmHeader {
@@ -42,7 +25,7 @@ struct FilmHeader {
   /// What its maker wants to know of it later on, in any form.
   std::string notes;
 
-  // Set by those that read and write it.
+  // What describe() says of the film, which those that read and write it do.
   PixelWindow window;
   LayerSet layers;
   WavelengthBuckets buckets;
@@ -57,6 +40,9 @@ struct FilmFile {
   Film film;
 };
 
+/// Sets in a header what the film itself says: window, layers, buckets, chromaticities, samples.
+void describe(FilmHeader& header, const Film& film);
+
 /// The extension of films' files.
 inline constexpr const char* kFilmExtension = ".film";
 /// Whether a name has it.
@@ -67,11 +53,18 @@ bool is_film_file(const std::string& path);
 /// @throws Error that names the file
 void write_film(AsideFile& file, FilmHeader header, const Film& film);
 
+/// What write_film() writes, in memory.
+std::string film_bytes(FilmHeader header, const Film& film);
+
 /// @throws Error that names the file, if it is no film, of another version of the format, cut off
 /// or
 ///   damaged
 FilmHeader read_film_header(const std::string& path);
 /// @throws Error as read_film_header
 FilmFile read_film(const std::string& path);
+/// A film of the bytes of its file.
+/// @param name of the film, for messages
+/// @throws Error as read_film_header
+FilmFile film_of_bytes(std::string_view bytes, const std::string& name);
 
 }  // namespace freepath

@@ -10,10 +10,11 @@
 namespace freepath {
 namespace {
 
-/// A part, of which the header alone is in memory.
+/// A part, of which the header alone need be in memory.
 struct Part {
   std::string file;
   FilmHeader header;
+  const Film* film = nullptr;  // in memory; null: in the file
 };
 
 /// "samples 0 to 15 of pixel (3, 4)"
@@ -85,8 +86,9 @@ class SeedMerger {
 
  private:
   void add(const Part& part) {
-    const FilmFile loaded = read_film(part.file);
-    const Film& other = loaded.film;
+    std::optional<FilmFile> loaded;
+    if (part.film == nullptr) loaded.emplace(read_film(part.file));
+    const Film& other = loaded ? loaded->film : *part.film;
     const PixelWindow& window = other.window();
     for (std::size_t i = 0; i < other.pixel_count(); ++i) {
       if (other.samples(i) == 0) continue;
@@ -147,15 +149,16 @@ void name_seeds(FilmHeader& header, const std::map<uint64_t, std::vector<Part>>&
   header.identity.facts.emplace_back("seeds averaged", names);
 }
 
-}  // namespace
-
-FilmFile merge_films(const std::vector<std::string>& files, const MergeOptions& options) {
-  if (files.empty()) fail("no film is given to merge");
+/// @param count of parts
+/// @param part_of makes the part of a number
+template <class Function>
+FilmFile merge(std::size_t count, Function part_of, const MergeOptions& options) {
+  if (count == 0) fail("no film is given to merge");
   std::vector<Part> parts;
   std::map<uint64_t, std::vector<Part>> seeds;
   PixelWindow region;
-  for (const std::string& file : files) {
-    const Part part{file, read_film_header(file)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Part part = part_of(i);
     if (!parts.empty()) check_same_picture(parts[0], part, options.average);
     std::vector<Part>& others = seeds[part.header.identity.seed];
     for (const Part& other : others) check_no_overlap(other, part);
@@ -173,7 +176,22 @@ FilmFile merge_films(const std::vector<std::string>& files, const MergeOptions& 
     SeedMerger(merged.film, of_seed, options.partial).run();
   }
   if (seeds.size() > 1) name_seeds(merged.header, seeds);
+  describe(merged.header, merged.film);
   return merged;
+}
+
+}  // namespace
+
+FilmFile merge_films(const std::vector<std::string>& files, const MergeOptions& options) {
+  const auto part_of = [&](std::size_t i) { return Part{files[i], read_film_header(files[i])}; };
+  return merge(files.size(), part_of, options);
+}
+
+FilmFile merge_films(std::span<const FilmPart> films, const MergeOptions& options) {
+  const auto part_of = [&](std::size_t i) {
+    return Part{films[i].name, *films[i].header, films[i].film};
+  };
+  return merge(films.size(), part_of, options);
 }
 
 }  // namespace freepath

@@ -1,6 +1,7 @@
 #pragma once
 /// @file Films of parts of a picture made one.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct MergeOptions {
   bool partial = false;
 };
 
+/// The film of a part, in memory.
+struct FilmPart {
+  std::string name;  ///< For messages.
+  const FilmHeader* header = nullptr;
+  const Film* film = nullptr;
+};
+
 /// Merges the films of parts of a picture: of ranges of samples, of tiles or crops, or of both. The
 /// result has the bits of the film of one process that rendered all of it.
 ///
@@ -27,5 +35,7 @@ struct MergeOptions {
 /// @throws Error that names the files: for parts of different pictures, and that overlap; where
 ///   samples are missing; as read_film
 FilmFile merge_films(const std::vector<std::string>& files, const MergeOptions& options = {});
+/// The same of films in memory.
+FilmFile merge_films(std::span<const FilmPart> films, const MergeOptions& options = {});
 
 }  // namespace freepath

@@ -6,6 +6,7 @@ Errors are `freepath.Error`, a ValueError, and say what is wrong, where, and wha
 """
 
 from ._field import DensityFunction, Field
+from ._film import Film, merge
 from ._flux import Fluxes, FluxMap, SlabFluxes, flux, slab
 from ._freepath import Error, max_channels, simd
 from ._freepath import version as __version__
@@ -22,6 +23,7 @@ __all__ = [
     "Estimate",
     "Event",
     "Field",
+    "Film",
     "FluxMap",
     "Fluxes",
     "FreePaths",
@@ -37,6 +39,7 @@ __all__ = [
     "estimators",
     "flux",
     "max_channels",
+    "merge",
     "phase_functions",
     "radiance",
     "render",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import uuid
 import warnings
 from collections.abc import Callable
 from typing import Any
@@ -25,8 +26,9 @@ class Field:
     `interpolation` of a walk gives it.
     """
 
-    __slots__ = ("_core",)
+    __slots__ = ("_core", "_digest_text")
     _core: _freepath.Field
+    _digest_text: str
 
     def __init__(self) -> None:
         raise TypeError("fields are made by Field.from_array or Field.open")
@@ -182,6 +184,19 @@ class Field:
         """Bytes of the voxels and their index."""
         return self._core.memory_bytes
 
+    def _digest(self) -> str:
+        """Name for the voxels and their place in the world: the same ones, the same name."""
+        if not hasattr(self, "_digest_text"):
+            self._digest_text = _freepath.digest_of_field(self._core)
+        return self._digest_text
+
+    def __reduce__(self) -> Any:
+        return _field_of_bricks, (
+            self.name,
+            self._core.transform,
+            *_freepath.bricks_of_field(self._core),
+        )
+
     def __repr__(self) -> str:
         return f"<freepath.Field {self.name!r} of {' x '.join(map(str, self.shape))} voxels>"
 
@@ -289,8 +304,19 @@ class DensityFunction(Field):
         """Nothing: a computed density has no voxels."""
         raise Error(f"'{self.name}' is computed and has no voxels: bake it first")
 
+    def _digest(self) -> str:
+        # What a function computes can't be known: it is the same as itself alone.
+        if not hasattr(self, "_digest_text"):
+            self._digest_text = uuid.uuid4().hex
+        return self._digest_text
+
     def __repr__(self) -> str:
         return f"<freepath.DensityFunction {self.name!r} from {self._lower} to {self._upper}>"
+
+
+def _field_of_bricks(*parts: Any) -> Field:
+    """Field of what pickling has made of it."""
+    return Field._of(_freepath.field_of_bricks(*parts))
 
 
 def _address(function: Any) -> int:

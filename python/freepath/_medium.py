@@ -52,6 +52,9 @@ class Component:
         self.emission = as_channels(emission, "emission")
         self.phase = as_phase_function(phase)
 
+    def __reduce__(self) -> Any:
+        return _component, (self.field, self.sigma_a, self.sigma_s, self.phase, self.emission)
+
     def __repr__(self) -> str:
         return (
             f"freepath.Component({self.field!r}, sigma_a={self.sigma_a}, sigma_s={self.sigma_s}, "
@@ -74,7 +77,7 @@ class Medium:
             field, and fields of voxels among computed ones.
     """
 
-    __slots__ = ("_core", "components")
+    __slots__ = ("_core", "_parts", "_super_voxel", "components")
 
     def __init__(
         self, components: Component | Field | Iterable[Component], *, super_voxel: int = 0
@@ -90,6 +93,9 @@ class Medium:
             for component in self.components
         ]
         self._core = _freepath.make_medium(parts, super_voxel)
+        # As they are now, whatever becomes of the components.
+        self._parts = tuple(component.__reduce__()[1] for component in self.components)
+        self._super_voxel = super_voxel
 
     @property
     def bounds(self) -> NDArray[np.float64]:
@@ -106,8 +112,29 @@ class Medium:
         """Number of super-voxels."""
         return self._core.super_voxel_count
 
+    def _digest(self) -> str:
+        """Text that tells it from others."""
+        parts = [
+            [field._digest(), sigma_a, sigma_s, phase._digest(), emission]
+            for field, sigma_a, sigma_s, phase, emission in self._parts
+        ]
+        return repr([parts, self._super_voxel])
+
+    def __reduce__(self) -> Any:
+        return _medium, (self._parts, self._super_voxel)
+
     def __repr__(self) -> str:
         return f"freepath.Medium({list(self.components)!r})"
+
+
+def _component(field: Field, sigma_a: Any, sigma_s: Any, phase: Any, emission: Any) -> Component:
+    """Component of what pickling has made of it."""
+    return Component(field, sigma_a=sigma_a, sigma_s=sigma_s, phase=phase, emission=emission)
+
+
+def _medium(parts: tuple[Any, ...], super_voxel: int) -> Medium:
+    """Medium of what pickling has made of it."""
+    return Medium([_component(*part) for part in parts], super_voxel=super_voxel)
 
 
 def as_medium(medium: Medium | Component | Field | Iterable[Component]) -> Medium:

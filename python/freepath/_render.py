@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _freepath
-from ._arrays import Rays, as_count
+from ._arrays import Rays
+from ._film import Film
 from ._freepath import Error
-from ._sampling import Estimate, threads_of, walk_options
+from ._picture_options import Facts, common_options, facts_of, picture_options
+from ._sampling import Estimate
 from ._scene import Scene
 
 
@@ -39,13 +41,15 @@ class Progress:
 class Picture:
     """A picture with its layers, and how it came about. Row 0 is the top.
 
-    In Jupyter it shows itself. Arrays are views of the picture's own memory, and read-only.
+    It keeps its film, some 250 bytes a pixel, more with path layers. In Jupyter it shows itself.
+    Arrays are views of the picture's own memory, and read-only.
     """
 
-    __slots__ = ("_core", "_pixels", "_places")
+    __slots__ = ("_core", "_facts", "_pixels", "_places")
 
-    def __init__(self, core: _freepath.Picture) -> None:
+    def __init__(self, core: _freepath.Picture, facts: Callable[[], Facts] | None = None) -> None:
         self._core = core
+        self._facts = facts
         pixels: Any = core.pixels
         self._pixels: NDArray[np.float32] = pixels
         self._places = {name: i for i, name in enumerate(core.channels)}
@@ -82,6 +86,15 @@ class Picture:
     def stats(self) -> dict[str, Any]:
         """Samples, paths, seconds, methods, and counts of free paths and shadow rays."""
         return self._core.statistics
+
+    @property
+    def film(self) -> Film:
+        """What the samples of each pixel have added up to: to be merged with other parts.
+
+        Raises:
+            Error: where a file that the scene was read from has changed since.
+        """
+        return Film._of(self._core.film.with_facts(self._facts() if self._facts else []))
 
     def save(
         self, path: str | os.PathLike[str], *, exposure: float = 0.0, view: str = "standard"
@@ -127,10 +140,12 @@ def render(
     spp: int | None = None,
     time: float | None = None,
     noise: float | None = None,
+    samples: tuple[int, int] | range | None = None,
     seed: int | None = None,
     color: str | None = None,
     layers: str | None = None,
     crop: tuple[int, int, int, int] | None = None,
+    tile: tuple[int, int] | None = None,
     tracker: str | None = None,
     estimator: str | None = None,
     interpolation: str | None = None,
@@ -155,11 +170,14 @@ def render(
         time: seconds to render; with spp, whichever ends first.
         noise: to render as many samples as it takes for the standard error of a pixel, root mean
             square, to be this part of the picture's mean, by a pilot of another seed; spp is the most.
+        samples: in place of the three above, a part: the samples from the first to before the end,
+            counted from 0; a pair, or a range. Films of parts are merged by `freepath.merge`.
         seed: of the random numbers, 0 to 2^64 - 1.
         color: "rgb", or "spectral": with `wavelengths` of each sample [volumes: rgb, scenes:
             spectral].
         layers: names of layers to record, separated by commas; "all", "none" or "default".
         crop: x0, y0, x1, y1 [pixels]: a part of the picture, from (x0, y0) to before (x1, y1).
+        tile: number, counted from 1, and count: one of so many bands of rows of it.
         tracker: free-path sampling, by name; "auto" chooses.
         estimator: transmittance of shadow rays, by name.
         interpolation: "nearest", "trilinear" or "stochastic".
@@ -185,20 +203,13 @@ def render(
         KeyboardInterrupt: at Ctrl-C; nothing is returned then.
         Exception: whatever `progress` raises, once the rendering has ended.
     """
-    options = _options(
-        scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
-        max_scatterings, wavelengths, shadow_roulette, threads, simd,
+    options = picture_options(
+        scene, spp=spp, time=time, noise=noise, samples=samples, seed=seed, color=color,
+        layers=layers, crop=crop, tile=tile, tracker=tracker, estimator=estimator,
+        interpolation=interpolation, absorption=absorption, emission=emission,
+        max_scatterings=max_scatterings, wavelengths=wavelengths, shadow_roulette=shadow_roulette,
+        threads=threads, simd=simd,
     )  # fmt: skip
-    options.time_limit = _seconds(time)
-    if noise is not None:
-        if not 1e-6 <= noise <= 1:
-            raise Error(f"noise: {noise!r} is not between 1e-6 and 1")
-        options.noise = float(noise)
-    options.layers = layers
-    if crop is not None:
-        if len(crop) != 4:
-            raise Error(f"crop: {crop!r} is not x0, y0, x1, y1")
-        options.crop = [as_count(edge, "crop", 0, 32768) for edge in crop]
     shown: Any = None
     if progress is True:
         from ._display import show_progress
@@ -210,7 +221,14 @@ def render(
     finally:
         if shown is not None:
             shown.close()
-    return _checked(Picture(core))
+    return checked(Picture(core, lambda: facts_of(scene, options)))
+
+
+def film_of_part(scene: Scene, **how: Any) -> Film:
+    """Render as `render` does, and return the film without a word about what may be amiss."""
+    options = picture_options(scene, **how)
+    core = _freepath.render(scene._core, options, None, False)
+    return Picture(core, lambda: facts_of(scene, options)).film
 
 
 def radiance(
@@ -252,7 +270,7 @@ def radiance(
         Error: as `render`, and for rays that are none, naming the first.
         KeyboardInterrupt: at Ctrl-C; nothing is returned then.
     """
-    options = _options(
+    options = common_options(
         scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
         max_scatterings, wavelengths, shadow_roulette, threads, simd,
     )  # fmt: skip
@@ -265,7 +283,7 @@ def radiance(
     core = _freepath.radiance(
         scene._core, options, rays.origins, rays.directions, rays.t_max, width
     )
-    picture = _checked(Picture(core))
+    picture = checked(Picture(core))
     mean, variance = (
         pixels.reshape(-1, 3)[:count].astype(np.float64)
         for pixels in (picture.image, picture.variance)
@@ -275,36 +293,6 @@ def radiance(
 
 _ROW = 1024
 """Rays in a row of the picture that they are rendered as."""
-
-
-def _options(
-    scene: Scene, spp: Any, seed: Any, color: Any, tracker: Any, estimator: Any, interpolation: Any,
-    absorption: Any, emission: Any, max_scatterings: Any, wavelengths: Any, shadow_roulette: Any,
-    threads: Any, simd: Any,
-) -> _freepath.RenderOptions:  # fmt: skip
-    """Options that pictures and rays have in common."""
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene: {type(scene).__name__} is no Scene; see Scene.around")
-    options = _freepath.RenderOptions()
-    options.walk = walk_options(absorption=absorption, emission=emission, simd=simd)
-    options.samples = None if spp is None else as_count(spp, "spp", 1, 2**30)
-    options.seed = None if seed is None else as_count(seed, "seed", 0, 2**64 - 1)
-    options.color = color
-    options.tracker, options.estimator, options.interpolation = tracker, estimator, interpolation
-    if max_scatterings is not None:
-        options.max_scatterings = as_count(max_scatterings, "max_scatterings", 1, 2**32 - 1)
-    options.wavelengths = as_count(wavelengths, "wavelengths", 1, _freepath.max_channels)
-    options.threads = threads_of(threads)
-    options.shadow_roulette = bool(shadow_roulette)
-    return options
-
-
-def _seconds(time: float | None) -> float:
-    if time is None:
-        return 0.0
-    if not (np.isfinite(time) and time > 0):
-        raise Error(f"time: {time!r} is no positive number of seconds")
-    return float(time)
 
 
 def _callback(progress: Any) -> tuple[Callable[..., Any] | None, bool]:
@@ -321,7 +309,7 @@ def _callback(progress: Any) -> tuple[Callable[..., Any] | None, bool]:
     return tell, getattr(progress, "wants_pictures", True)
 
 
-def _checked(picture: Picture) -> Picture:
+def checked(picture: Picture) -> Picture:
     """Return a picture after saying what makes it less than it should be.
 
     Raises:

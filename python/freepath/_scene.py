@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import warnings
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -19,26 +21,124 @@ _UNSET: Any = object()
 """What is said of a sun where nothing is said."""
 
 
+@dataclass(frozen=True)
+class _PbrtSource:
+    """What a pbrt scene is read from.
+
+    Attributes:
+        source: name of a file, or a text.
+        is_text: whether it is a text.
+        name: of the text.
+    """
+
+    source: str
+    is_text: bool
+    name: str
+
+    def __reduce__(self) -> Any:
+        # Whoever reads it may be in another folder.
+        if self.is_text:
+            return _PbrtSource, (self.source, True, os.path.abspath(self.name))
+        return _PbrtSource, (os.path.abspath(self.source), False, self.name)
+
+
+@dataclass(frozen=True)
+class _Recipe:
+    """What a scene is made of.
+
+    Attributes:
+        of: a medium, or what a pbrt scene is read from.
+        options: attributes of SceneOptions by name.
+    """
+
+    of: Medium | _PbrtSource
+    options: dict[str, Any]
+
+    def build(self) -> tuple[_freepath.Scene, list[str]]:
+        """Return the scene, and what there is to say about it."""
+        options = _freepath.SceneOptions()
+        for name, value in self.options.items():
+            setattr(options, name, value)
+        if isinstance(self.of, Medium):
+            return _freepath.scene_around(self.of._core, options)
+        return _freepath.scene_of_pbrt(self.of.source, self.of.is_text, self.of.name, options)
+
+    def environment_file(self) -> str | None:
+        """Return the name of the image that lights the scene, if there is one."""
+        environment = self.options["environment"]
+        return environment if isinstance(environment, str) and environment != "sky" else None
+
+    def text(self) -> str:
+        """Return what tells it from others; files count by their content, which is told apart."""
+        options = dict(self.options)
+        if self.environment_file():
+            options["environment"] = "a file"
+        if isinstance(self.of, Medium):
+            of = self.of._digest()
+        else:
+            of = self.of.source if self.of.is_text else "a file"
+        return repr((of, sorted(options.items())))
+
+    def __reduce__(self) -> Any:
+        options = dict(self.options)
+        file = self.environment_file()
+        if file:
+            options["environment"] = os.path.abspath(file)
+        return _Recipe, (self.of, options)
+
+
 class Scene:
     """A scene as paths see it, with a camera: built once, rendered as often as you like.
 
-    Made by `Scene.around` or `Scene.from_pbrt`.
+    Made by `Scene.around` or `Scene.from_pbrt`. Pickled, it is what it was made of, and is built
+    again elsewhere: of a file its name, of a medium its voxels.
     """
 
-    __slots__ = ("_core",)
+    __slots__ = ("_core", "_recipe", "_stamps", "_known_facts")
     _core: _freepath.Scene
+    _recipe: _Recipe
+    _stamps: dict[str, tuple[int, int]]
+    _known_facts: list[tuple[str, str]]
 
     def __init__(self) -> None:
         raise TypeError("scenes are made by Scene.around or Scene.from_pbrt")
 
     @classmethod
-    def _of(cls, made: tuple[_freepath.Scene, list[str]]) -> Scene:
-        core, notes = made
+    def _of(cls, recipe: _Recipe) -> Scene:
+        core, notes = recipe.build()
         for note in notes:
             warnings.warn(note, stacklevel=3)
         scene = cls.__new__(cls)
         scene._core = core
+        scene._recipe = recipe
+        files = {*core.files}
+        if environment := recipe.environment_file():
+            files.add(environment)
+        if isinstance(recipe.of, _PbrtSource) and not recipe.of.is_text:
+            files.add(recipe.of.source)
+        scene._stamps = {file: _stamp(file) for file in sorted({*map(os.path.abspath, files)})}
         return scene
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """What pictures of it depend on, as films tell: names and values.
+
+        Raises:
+            Error: where a file has changed since the scene was built.
+        """
+        if not hasattr(self, "_known_facts"):
+            facts = _freepath.file_facts(list(self._stamps))
+            for file, stamp in self._stamps.items():
+                if _stamp(file) != stamp:
+                    raise Error(
+                        f"{file}: has changed since the scene was built, whose film is asked for: "
+                        "build the scene again"
+                    )
+            digest = hashlib.sha1(self._recipe.text().encode()).hexdigest()
+            self._known_facts = [("the scene", digest), *facts]
+        return self._known_facts
+
+    def __reduce__(self) -> Any:
+        return Scene._of, (self._recipe,)
 
     @classmethod
     def around(
@@ -93,7 +193,7 @@ class Scene:
         )  # fmt: skip
         if sun is _UNSET:
             options.has_sun = isinstance(environment, str) and environment == "sky"
-        return cls._of(_freepath.scene_around(as_medium(medium)._core, options))
+        return cls._of(_Recipe(as_medium(medium), _state_of(options)))
 
     @classmethod
     def from_pbrt(
@@ -136,7 +236,7 @@ class Scene:
         )  # fmt: skip
         text = os.fspath(source)
         is_text = isinstance(source, str) and "\n" in text
-        return cls._of(_freepath.scene_of_pbrt(text, is_text, name, options))
+        return cls._of(_Recipe(_PbrtSource(text, is_text, name), _state_of(options)))
 
     @property
     def size(self) -> tuple[int, int]:
@@ -177,6 +277,18 @@ def _options(
     options.periodic = periodic
     options.domain = corners(domain)
     return options
+
+
+def _state_of(options: _freepath.SceneOptions) -> dict[str, Any]:
+    """Return all attributes by name."""
+    names = [name for name in dir(options) if not name.startswith("_")]
+    return {name: getattr(options, name) for name in names}
+
+
+def _stamp(file: str) -> tuple[int, int]:
+    """Size and time of a file, which tell whether it has been written to."""
+    status = os.stat(file)
+    return status.st_size, status.st_mtime_ns
 
 
 def picture_size(size: Any) -> tuple[int, int]:

@@ -8,9 +8,12 @@ namespace freepath::python {
 
 void bind_methods(nanobind::module_& module);
 void bind_fields(nanobind::module_& module);
+void bind_field_states(nanobind::module_& module);
 void bind_media(nanobind::module_& module);
 void bind_sampling(nanobind::module_& module);
 void bind_scenes(nanobind::module_& module);
+void bind_films(nanobind::module_& module);
+void bind_pictures(nanobind::module_& module);
 void bind_rendering(nanobind::module_& module);
 void bind_fluxes(nanobind::module_& module);
 

@@ -79,9 +79,12 @@ NB_MODULE(_freepath, module) {
   module.attr("max_channels") = kMaxChannels;
   python::bind_methods(module);
   python::bind_fields(module);
+  python::bind_field_states(module);
   python::bind_media(module);
   python::bind_sampling(module);
   python::bind_scenes(module);
+  python::bind_films(module);
+  python::bind_pictures(module);
   python::bind_rendering(module);
   python::bind_fluxes(module);
 }

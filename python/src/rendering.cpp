@@ -20,17 +20,16 @@
 #include "freepath/base/error.h"
 #include "freepath/base/memory_budget.h"
 #include "freepath/base/version.h"
-#include "freepath/io/aside_file.h"
 #include "freepath/io/image.h"
-#include "freepath/io/image_aside.h"
 #include "freepath/paths/noise_target.h"
 #include "freepath/paths/renderer.h"
 #include "freepath/scene/assembly/scene_settings.h"
+#include "freepath/sensors/tile.h"
 #include "freepath/transport/auto_tracker.h"
 #include "python/src/arrays.h"
 #include "python/src/bindings.h"
-#include "python/src/counts.h"
 #include "python/src/interruptible.h"
+#include "python/src/pictures.h"
 #include "python/src/ray_arrays.h"
 #include "python/src/scenes.h"
 #include "python/src/walk_options.h"
@@ -46,23 +45,12 @@ struct RenderOptions {
   std::optional<uint64_t> seed;
   double time_limit = 0;
   std::optional<double> noise;
-  std::optional<std::array<double, 4>> crop;  ///< x0, y0, x1, y1 [pixels]
+  std::optional<std::array<double, 4>> crop;           ///< x0, y0, x1, y1 [pixels]
+  std::optional<std::pair<uint32_t, uint32_t>> range;  ///< Samples, from first to before end.
+  std::optional<std::pair<uint32_t, uint32_t>> tile;   ///< Number and count.
   int wavelengths = RenderSettings{}.wavelengths;
   int threads = 0;
   bool shadow_roulette = true;
-};
-
-/// A picture, and how it came about.
-struct PythonPicture {
-  Image image;
-  RenderSettings settings;
-  bool is_spectral = false;
-  // Of RenderResult, which has the film in it.
-  PathCounts counts;
-  uint32_t samples = 0, most_samples = 0;
-  std::size_t pixels_without_samples = 0;
-  double seconds = 0;
-  bool interrupted = false;
 };
 
 ColorMode color_mode(const PythonScene& scene, const RenderOptions& options) {
@@ -168,16 +156,6 @@ bool tell_progress(const nb::object& callback, ProgressDesk& desk) {
   return !answer.is(nb::bool_(false));
 }
 
-void take_result(const RenderResult& result, PythonPicture& picture) {
-  picture.image = result.film.to_image();
-  picture.counts = result.counts;
-  picture.samples = result.samples;
-  picture.most_samples = result.most_samples;
-  picture.pixels_without_samples = result.pixels_without_samples;
-  picture.seconds = result.seconds;
-  picture.interrupted = result.interrupted;
-}
-
 /// The number of samples that the noise takes that is asked for.
 uint32_t samples_for(const PythonScene& scene, ColorMode color, const RenderOptions& options,
                      RenderSettings settings, const std::atomic<bool>& stop) {
@@ -188,44 +166,76 @@ uint32_t samples_for(const PythonScene& scene, ColorMode color, const RenderOpti
   return plan.samples;
 }
 
+/// What tells a film of these settings from others, but for what is to be told of the scene.
+FilmHeader film_header(const RenderSettings& settings, ColorMode color) {
+  FilmHeader header;
+  header.identity = {version(), settings.walk.seed, {}};
+  header.identity.add_methods(settings, color == ColorMode::kSpectral ? "spectral" : "rgb");
+  header.wanted_samples = settings.samples;
+  return header;
+}
+
+PythonPicture picture_of_result(RenderResult result, FilmHeader header) {
+  header.counts = result.counts;
+  header.seconds = result.seconds;
+  describe(header, result.film);
+  PythonPicture picture =
+      picture_of({{}, std::move(header), std::make_shared<const Film>(std::move(result.film))});
+  picture.interrupted = result.interrupted;
+  return picture;
+}
+
 PythonPicture render(const PythonScene& scene, const RenderOptions& options,
                      const nb::object& callback, bool wants_pictures) {
-  PythonPicture picture;
   const ColorMode color = color_mode(scene, options);
-  picture.is_spectral = color == ColorMode::kSpectral;
-  picture.settings = render_settings(scene, options);
-  RenderSettings& settings = picture.settings;
+  RenderSettings settings = render_settings(scene, options);
   const PathScene& path_scene = scene.built.scene;
-  if (!picture.is_spectral) settings.buckets = {};
-  check_film_memory(
-      pixel_window(settings.crop, path_scene.camera->width(), path_scene.camera->height()),
-      settings);
+  if (color != ColorMode::kSpectral) settings.buckets = {};
+  const auto window = [&] {
+    return pixel_window(settings.crop, path_scene.camera->width(), path_scene.camera->height());
+  };
+  const PixelWindow region = window();
+  if (options.tile) settings.crop = tile_of(region, {options.tile->first, options.tile->second});
+  if (options.range) {
+    settings.first_sample = options.range->first;
+    settings.samples = options.range->second - options.range->first;
+  }
+  check_film_memory(window(), settings);
+  FilmHeader header = film_header(settings, color);
+  header.region = region;
   ProgressDesk desk(settings.samples, wants_pictures);
-  RenderSettings run = settings;
-  run.on_pass = [&](const Film& film) { desk.put(film); };
+  settings.on_pass = [&](const Film& film) { desk.put(film); };
   Poll poll;
   if (!callback.is_none()) poll = [&] { return tell_progress(callback, desk); };
+  PythonPicture picture;
   run_interruptibly(
       [&](const std::atomic<bool>& stop) {
         const std::shared_lock no_other_camera(scene.camera_gate);
-        if (options.noise)
-          settings.samples = run.samples = samples_for(scene, color, options, run, stop);
-        const RenderResult result =
-            render_scene(path_scene, color, run, [&](const RenderProgress& progress) {
-              desk.put(progress);
-              return !stop;
-            });
-        take_result(result, picture);
+        if (options.noise) {
+          settings.samples = samples_for(scene, color, options, settings, stop);
+          header.wanted_samples = settings.samples;
+        }
+        picture = picture_of_result(render_scene(path_scene, color, settings,
+                                                 [&](const RenderProgress& progress) {
+                                                   desk.put(progress);
+                                                   return !stop;
+                                                 }),
+                                    std::move(header));
       },
       poll);
   if (poll) poll();
-  picture.image.metadata = {{"Software", fmt::format("freepath {}", version())},
-                            {"freepath:version", std::string(version())},
-                            {"freepath:seed", static_cast<int64_t>(settings.walk.seed)},
-                            {"freepath:samples", int64_t{picture.samples}},
-                            {"freepath:tracker", settings.walk.tracker},
-                            {"freepath:transmittance", settings.walk.transmittance}};
   return picture;
+}
+
+/// The number of samples that render() would take: 0 where the time alone says it.
+uint32_t plan_samples(const PythonScene& scene, const RenderOptions& options) {
+  const ColorMode color = color_mode(scene, options);
+  const RenderSettings settings = render_settings(scene, options);
+  if (!options.noise) return settings.samples;
+  return result_interruptibly([&](const std::atomic<bool>& stop) {
+    const std::shared_lock no_other_camera(scene.camera_gate);
+    return samples_for(scene, color, options, settings, stop);
+  });
 }
 
 /// A scene that is seen along given rays, for as long as it lives.
@@ -261,69 +271,20 @@ PythonPicture radiance(PythonScene& scene, const RenderOptions& options, const V
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rays[i] = source.ray(std::min(i, source.size() - 1));
   }
-  PythonPicture picture;
   const ColorMode color = color_mode(scene, options);
-  picture.is_spectral = color == ColorMode::kSpectral;
-  picture.settings = render_settings(scene, options);
-  picture.settings.crop.reset();
-  picture.settings.buckets = {};
-  check_film_memory(PixelWindow::whole(width, height), picture.settings);
-  run_interruptibly([&](const std::atomic<bool>& stop) {
+  RenderSettings settings = render_settings(scene, options);
+  settings.crop.reset();
+  settings.buckets = {};
+  const PixelWindow window = PixelWindow::whole(width, height);
+  check_film_memory(window, settings);
+  FilmHeader header = film_header(settings, color);
+  header.region = window;
+  return result_interruptibly([&](const std::atomic<bool>& stop) {
     const OwnSensor sensor(scene, Camera::of_rays(std::move(rays), width, height));
-    take_result(render_scene(scene.built.scene, color, picture.settings,
-                             [&](const RenderProgress&) { return !stop; }),
-                picture);
+    return picture_of_result(render_scene(scene.built.scene, color, settings,
+                                          [&](const RenderProgress&) { return !stop; }),
+                             std::move(header));
   });
-  return picture;
-}
-
-nb::dict statistics_of(const PythonPicture& picture) {
-  nb::dict stats;
-  stats["samples"] = picture.samples;
-  stats["most_samples"] = picture.most_samples;
-  stats["pixels_without_samples"] = picture.pixels_without_samples;
-  stats["paths"] = picture.counts.paths;
-  stats["overflows"] = picture.counts.overflows;
-  stats["cut_paths"] = picture.counts.cut_paths;
-  stats["cut_share"] = picture.counts.cut_share();
-  stats["seconds"] = picture.seconds;
-  stats["interrupted"] = picture.interrupted;
-  stats["max_scatterings"] = picture.settings.max_scatterings;
-  stats["seed"] = picture.settings.walk.seed;
-  stats["tracker"] = picture.settings.walk.tracker;
-  stats["estimator"] = picture.settings.walk.transmittance;
-  stats["color"] = picture.is_spectral ? "spectral" : "rgb";
-  stats["free_paths"] = counts_to_python(picture.counts.free_paths);
-  stats["shadow_rays"] = counts_to_python(picture.counts.shadow_rays);
-  return stats;
-}
-
-PictureLook look_of(double exposure, const std::string& view) {
-  if (view == "standard") return {exposure, ViewTransform::kStandard};
-  if (view == "neutral") return {exposure, ViewTransform::kNeutral};
-  fail("view '{}' is unknown; there are: standard, neutral", view);
-}
-
-/// The picture's own memory: read-only, and kept by the array.
-nb::object pixels_of(const nb::handle& self) {
-  const Image& image = nb::cast<const PythonPicture&>(self).image;
-  return nb::cast(nb::ndarray<nb::numpy, const float>(
-      image.values.data(),
-      {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
-       image.channels.size()},
-      self));
-}
-
-using Pixels = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
-
-/// A PNG file of linear R, G, B.
-nb::bytes png_of_pixels(const Pixels& pixels) {
-  Image image{.width = static_cast<int>(pixels.shape(1)),
-              .height = static_cast<int>(pixels.shape(0)),
-              .channels = {"R", "G", "B"}};
-  image.values.assign(pixels.data(), pixels.data() + pixels.size());
-  const std::vector<uint8_t> bytes = encode_png(image, look_of(0, "neutral"), "the picture");
-  return nb::bytes(bytes.data(), bytes.size());
 }
 
 }  // namespace
@@ -345,35 +306,14 @@ void bind_rendering(nb::module_& module) {
       .def_rw("time_limit", &RenderOptions::time_limit)
       .def_rw("noise", &RenderOptions::noise)
       .def_rw("crop", &RenderOptions::crop, nb::for_setter(nb::arg("crop").none()))
+      .def_rw("range", &RenderOptions::range, nb::for_setter(nb::arg("range").none()))
+      .def_rw("tile", &RenderOptions::tile, nb::for_setter(nb::arg("tile").none()))
       .def_rw("wavelengths", &RenderOptions::wavelengths)
       .def_rw("threads", &RenderOptions::threads)
       .def_rw("shadow_roulette", &RenderOptions::shadow_roulette);
-  nb::class_<PythonPicture>(module, "Picture")
-      .def_prop_ro("pixels", [](const nb::handle& self) { return pixels_of(self); })
-      .def_prop_ro("channels", [](const PythonPicture& self) { return self.image.channels; })
-      .def_prop_ro("statistics", &statistics_of)
-      .def(
-          "save",
-          [](const PythonPicture& self, const std::string& path, double exposure,
-             const std::string& view) {
-            const PictureLook look = look_of(exposure, view);
-            run_interruptibly([&](const std::atomic<bool>& /*stop*/) {
-              AsideFile file(path);
-              write_image(file, self.image, look);
-            });
-          },
-          nb::arg("path"), nb::arg("exposure"), nb::arg("view"))
-      .def(
-          "png",
-          [](const PythonPicture& self, double exposure, const std::string& view) {
-            const std::vector<uint8_t> bytes =
-                encode_png(self.image, look_of(exposure, view), "the picture");
-            return nb::bytes(bytes.data(), bytes.size());
-          },
-          nb::arg("exposure"), nb::arg("view"));
-  module.def("png_of_pixels", &png_of_pixels, nb::arg("pixels"));
   module.def("radiance", &radiance, nb::arg("scene"), nb::arg("options"), nb::arg("origins"),
              nb::arg("directions"), nb::arg("t_max"), nb::arg("width"));
+  module.def("plan_samples", &plan_samples, nb::arg("scene"), nb::arg("options"));
   module.def("render", &render, nb::arg("scene"), nb::arg("options"), nb::arg("callback").none(),
              nb::arg("wants_pictures"));
 }
