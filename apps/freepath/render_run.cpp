@@ -15,6 +15,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/json_text.h"
 #include "freepath/paths/noise_target.h"
+#include "freepath/paths/time_target.h"
 
 namespace freepath::program {
 namespace {
@@ -148,6 +149,21 @@ void settle_samples(const RenderJob& job, RenderSettings& settings, const StopOn
        most > 0 && plan.samples == most ? ", the most that --spp allows" : "");
 }
 
+/// Chooses the number of samples that the time allows by a pilot, so that what the picture's own
+/// samples cost does not; the clock still ends it where the machine has become much slower.
+void settle_time(const RenderJob& job, RenderSettings& settings, const StopOnInterrupt& stop) {
+  const TimePlan plan = plan_time(job.scene, job.color, settings,
+                                  [&](const RenderProgress&) { return !stop.requested(); });
+  if (stop.requested()) fail("interrupted before it was known how many samples the time allows");
+  if (plan.seconds == 0) return;
+  constexpr double kPatience = 1.05;
+  settings.time_limit = std::max(kPatience * settings.time_limit - plan.seconds, 1.0);
+  if (plan.samples == 0) return;
+  settings.samples = plan.samples;
+  tell("the time allows {}, by a pilot of {:.1f} s\n", counted(plan.samples, "sample"),
+       plan.seconds);
+}
+
 }  // namespace
 
 RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
@@ -187,7 +203,10 @@ RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
     facts.emplace_back("the camera's place", place_text(camera));
     facts.insert(facts.end(), job.facts.begin(), job.facts.end());
   }
+  const uint32_t had = before ? read_film_header(*before).samples.most : 0;
   if (job.run.noise) settle_samples(job, settings, stop);
+  // What is gone on with has samples that no pilot has chosen.
+  if (settings.time_limit > 0 && had == 0) settle_time(job, settings, stop);
   header.wanted_samples = settings.samples;
   if (before) settings.before = load_before(*before, header, settings, buckets);
   CheckpointWriter checkpoints(job.checkpoint, header);

@@ -34,17 +34,24 @@ double relative_noise(const Film& film) {
   return std::sqrt(variance / values) / std::abs(sum / values);
 }
 
-NoisePlan plan_noise(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
-                     double noise, const ProgressFunction& progress) {
+RenderSettings pilot_settings(const RenderSettings& settings) {
   RenderSettings pilot = settings;
   pilot.walk.seed ^= kPilotSeed;
   pilot.first_sample = 0;
+  pilot.samples = 0;
   pilot.time_limit = 0;
+  pilot.whole_passes = false;
   pilot.layers = {};
   pilot.buckets = {};
   pilot.on_pass = {};
   pilot.on_checkpoint = {};
   pilot.before = {};
+  return pilot;
+}
+
+NoisePlan plan_noise(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
+                     double noise, const ProgressFunction& progress) {
+  RenderSettings pilot = pilot_settings(settings);
   const double most = settings.samples > 0 ? settings.samples : kMostSamples;
   NoisePlan plan;
   for (pilot.samples = kFirstPilot;; pilot.samples *= 2) {

@@ -12,6 +12,10 @@ namespace freepath {
 /// black picture.
 double relative_noise(const Film& film);
 
+/// The settings of a pilot of a picture: another seed, and nothing recorded but the colour. It has
+/// no time limit, and no samples yet.
+RenderSettings pilot_settings(const RenderSettings& settings);
+
 /// What a pilot has found.
 struct NoisePlan {
   uint32_t samples = 0;        ///< Of each pixel, that the noise takes.

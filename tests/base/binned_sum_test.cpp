@@ -30,7 +30,7 @@ std::vector<double> numbers_of(int count, int exponents, bool are_floats) {
   RandomStream random(7, 0, 0, static_cast<uint32_t>(exponents));
   std::vector<double> numbers;
   for (int i = 0; i < count; ++i) {
-    const double magnitude = std::exp2((2 * random.uniform() - 1) * exponents);
+    const double magnitude = std::exp2((2.0 * random.uniform() - 1) * exponents);
     double number = (random.uniform() - 0.5) * magnitude;
     if (i % 11 == 0) number = 0;
     numbers.push_back(are_floats ? static_cast<float>(number) : number);
