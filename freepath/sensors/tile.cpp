@@ -11,7 +11,8 @@ Crop tile_of(const PixelWindow& window, const Tile& tile) {
          rows);
   }
   const auto row = [&](uint32_t number) {
-    return window.y + static_cast<double>(uint64_t{rows} * number / tile.count);
+    const uint64_t rows_before = uint64_t{rows} * number / tile.count;
+    return window.y + static_cast<double>(rows_before);
   };
   return {static_cast<double>(window.x), row(tile.number - 1),
           static_cast<double>(window.x + window.width), row(tile.number)};

@@ -17,7 +17,7 @@ from typing import Any
 
 from ._arrays import as_count
 from ._film import Film, merge
-from ._freepath import Error
+from ._freepath import Error, version
 from ._picture_options import picture_options, planned_samples
 from ._render import Picture, checked, film_of_part
 from ._sampling import threads_of
@@ -148,8 +148,12 @@ def _same_scene(film: Film, facts: dict[str, str]) -> Film:
     """Return a film of a worker whose scene is that of the client.
 
     Raises:
-        Error: where it isn't, naming what differs.
+        Error: where it isn't, naming what differs; where the worker has another freepath.
     """
+    if film._core.version != version:
+        raise Error(
+            f"a worker has freepath {film._core.version} and not {version}; give workers the same"
+        )
     theirs = film.facts
     for name, value in facts.items():
         if theirs.get(name) != value:

@@ -75,6 +75,12 @@ def test_a_worker_whose_files_are_others_is_found_out(client, tmp_path):
         freepath.distributed.render(scene, client, spp=2)
 
 
+def test_a_worker_of_another_version_is_found_out(client, scene, monkeypatch):
+    monkeypatch.setattr(freepath.distributed, "version", "0.0.1")
+    with pytest.raises(fp.Error, match="a worker has freepath .* and not 0.0.1"):
+        freepath.distributed.render(scene, client, spp=2)
+
+
 def test_killed_workers_cost_no_bit(cluster, client, scene):
     """The first result ends a worker by SIGKILL, in the middle of the next part of its own."""
     whole = fp.render(scene, spp=96, seed=8)
