@@ -83,7 +83,7 @@ def test_a_worker_of_another_version_is_found_out(client, scene, monkeypatch):
 
 def test_killed_workers_cost_no_bit(cluster, client, scene):
     """The first result ends a worker by SIGKILL, in the middle of the next part of its own."""
-    whole = fp.render(scene, spp=96, seed=8)
+    whole = fp.render(scene, spp=240, seed=8)
     killed = []
 
     def kill(picture):
@@ -93,7 +93,7 @@ def test_killed_workers_cost_no_bit(cluster, client, scene):
                 os.kill(worker.pid, signal.SIGKILL)
                 killed.append(worker.pid)
 
-    picture = freepath.distributed.render(scene, client, spp=96, parts=24, seed=8, on_result=kill)
+    picture = freepath.distributed.render(scene, client, spp=240, parts=24, seed=8, on_result=kill)
     assert killed
     assert_same_bits(picture, whole)
 
