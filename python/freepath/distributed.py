@@ -60,13 +60,13 @@ def render(
         noise: the noise to reach, as `freepath.render` has it; pilots are shared out, too.
         parts: tasks that the samples are shared out to [four for each thread of the workers that
             there are]. Some seconds for each keep the overhead low.
-        on_result: called with the picture so far whenever a part has come, but with the whole one;
-            pixels have the samples of the parts that are there. False ends the rendering, and the
-            picture so far is returned.
+        on_result: called with the picture so far whenever a part but the last has come; its pixels
+            have the samples of the parts that are there. False ends the rendering, and the picture
+            so far is returned.
         retries: how often a task that failed is tried again. A task whose worker is lost is given to
             another one by Dask (`distributed.scheduler.allowed-failures` times).
-        threads: of a task. A worker works on as many tasks at a time as it has threads for Dask; on a
-            worker with one, which has a machine for itself, give 0: as many as the machine has.
+        threads: of a task. A worker works on as many tasks at a time as it has threads for Dask; on
+            one with a single thread and a machine for itself, give 0: as many as the machine has.
         **how: seed, color, layers, crop, tracker and others, as `freepath.render` has them.
 
     Returns:
