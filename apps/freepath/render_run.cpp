@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "apps/freepath/console.h"
+#include "apps/freepath/parse.h"
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/json_text.h"
@@ -154,7 +155,9 @@ RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
   RenderSettings& settings = report.settings;
   const Camera& camera = *job.scene.camera;
   const PixelWindow region = pixel_window(settings.crop, camera.width(), camera.height());
-  if (job.run.tile) settings.crop = tile_of(region, *job.run.tile);
+  if (job.run.tile) {
+    settings.crop = read_option("--tiles", [&] { return tile_of(region, *job.run.tile); });
+  }
   const PixelWindow window = pixel_window(settings.crop, camera.width(), camera.height());
   if (job.run.samples) {
     settings.first_sample = job.run.samples->first;

@@ -27,13 +27,14 @@ std::string place_text(uint32_t first, uint32_t end, int x, int y) {
 void check_same_picture(const Part& first, const Part& part, bool average) {
   const FilmHeader& a = first.header;
   const FilmHeader& b = part.header;
-  std::string reason = difference(a.identity, b.identity, average);
+  std::string reason;
   const auto compare = [&](bool is_same, std::string_view what) {
     if (reason.empty() && !is_same) reason = fmt::format("its {} are others", what);
   };
   compare(
       a.window.full_width == b.window.full_width && a.window.full_height == b.window.full_height,
       "width and height");
+  if (reason.empty()) reason = difference(a.identity, b.identity, average);
   compare(a.layers == b.layers, "layers");
   compare(a.buckets == b.buckets, "buckets of wavelengths");
   compare(a.chromaticities.has_value() == b.chromaticities.has_value() &&

@@ -84,8 +84,8 @@ TEST_F(ConsoleTest, NamesAreShownWithoutTheirControlCharactersAndAsJson) {
   grid.voxels.push_back({});
   grid.voxels.back().value = 1;
   testing_volumes::write_vdb_file(path(file), {grid});
-  const auto call = [&](std::vector<std::string> arguments) {
-    const Outcome outcome = call_program(arguments, folder_);
+  const auto call = [&](const std::vector<std::string>& arguments) {
+    Outcome outcome = call_program(arguments, folder_);
     expect_harmless(outcome.output);
     expect_harmless(outcome.messages);
     return outcome;

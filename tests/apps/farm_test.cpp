@@ -1,5 +1,7 @@
 // The recipes of examples/farm, run as plain processes.
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string>
 
@@ -40,7 +42,7 @@ TEST_F(FarmTest, TasksOfAnArrayBecomeOnePicture) {
       "SLURM_ARRAY_TASK_MIN=3 SLURM_ARRAY_TASK_COUNT=4 SLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=";
   const std::string script = " $farm/slurm_array.sh ball.vdb a.exr 13 --size 24x18";
   for (const char* number : {"5", "3", "6"}) {
-    const Outcome outcome = recipe(task + number + script);
+    const Outcome outcome = recipe(fmt::format("{}{}{}", task, number, script));
     EXPECT_EQ(outcome.status, 0) << outcome;
     EXPECT_FALSE(fs::exists(path("a.exr")));
   }
@@ -57,8 +59,9 @@ TEST_F(FarmTest, APreemptedTaskGoesOn) {
   const std::string script = " $farm/slurm_array.sh ball.vdb b.exr 3000 --size 24x18 --every 0.05";
   // A wish to stop reaches the program itself, as Slurm sends it to all of a job's processes.
   Outcome outcome;
+  const std::string short_run = task + "0.4" + script;
   for (int i = 0; i < 100; ++i) {
-    outcome = recipe(task + "0.4" + script);
+    outcome = recipe(short_run);
     if (outcome.status == 0) break;
   }
   if (outcome.status != 0) outcome = recipe(task + "600" + script);

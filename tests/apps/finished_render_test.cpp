@@ -1,5 +1,6 @@
 // A picture whose rendering took its time is written, whatever the surroundings are.
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -122,8 +123,9 @@ TEST_F(FinishedRenderTest, WhereThereAreFewThreadsFewerAreTaken) {
   for (const char* limit : {"7", "10"}) {
     for (const char* input : {"ball.vdb", "s.pbrt"}) {
       const Outcome outcome =
-          shell("prlimit --nproc=" + std::string(limit) + " " + user + program + " render " +
-                input + " -o a.exr -o b.png --size 64x64 --spp 1 --threads 8");
+          shell(fmt::format("prlimit --nproc={} {}{} render {} -o a.exr -o b.png --size 64x64 "
+                            "--spp 1 --threads 8",
+                            limit, user, program, input));
       EXPECT_EQ(outcome.status, 0) << limit << input << outcome;
       EXPECT_EQ(read_image(path("a.exr")).width, 64);
     }

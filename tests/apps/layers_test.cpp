@@ -1,10 +1,12 @@
 // Layers, crops and the denoiser of freepath render, for volumes and scenes.
 
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -277,7 +279,7 @@ TEST_F(LayersTest, WritesTheFormsOfExrThatAreAskedFor) {
   const Image exact = read_image(path("a.exr"));
   for (const std::string form :
        {"half", "float,piz", "zips,half", "half,dwaa:20", "dwab", "none"}) {
-    ASSERT_EQ(run(render + "b.exr --exr " + form).status, 0) << form;
+    ASSERT_EQ(run(fmt::format("{}b.exr --exr {}", render, form)).status, 0) << form;
     const Image image = read_image(path("b.exr"));
     ASSERT_EQ(image.channels, exact.channels) << form;
     const bool is_exact = form == "float,piz" || form == "none";
@@ -296,7 +298,7 @@ TEST_F(LayersTest, WritesTheFormsOfExrThatAreAskedFor) {
     }
   }
   for (const std::string wrong : {"quarter", "half:3", "dwaa:x", "half,", "dwaa:-1"}) {
-    const Outcome outcome = run(render + "c.exr --exr " + wrong);
+    const Outcome outcome = run(fmt::format("{}c.exr --exr {}", render, wrong));
     EXPECT_EQ(outcome.status, 1) << wrong << outcome;
     EXPECT_NE(outcome.messages.find("--exr"), std::string::npos) << wrong << outcome;
   }

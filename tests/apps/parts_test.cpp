@@ -1,5 +1,7 @@
 // Parts of pictures: ranges of samples and tiles, merged; checkpoints and what is gone on with.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -296,9 +298,10 @@ TEST_F(PartsTest, KilledRendersGoOn) {
   int kills = 0;
   const int wanted = trials(10);
   for (int run = 0; run < 20 * wanted && kills < wanted; ++run) {
-    const std::string seconds = std::to_string(0.02 + 0.3 * random.uniform());
-    const Outcome outcome = shell("timeout -s KILL " + seconds + " " + render +
-                                  "-o a.exr --checkpoint a.film --resume a.film --every 0.02");
+    const Outcome outcome = shell(
+        fmt::format("timeout -s KILL {:.3f} {}-o a.exr --checkpoint a.film --resume a.film --every "
+                    "0.02",
+                    0.02 + 0.3 * random.uniform(), render));
     if (outcome.status == 0) {
       expect_same_pixels("a.exr", "whole.exr");
       if (HasFatalFailure()) return;

@@ -81,7 +81,7 @@ TEST(BinnedSum, IsAsNearAsItsBinsSay) {
       exact += number;
       largest = std::max(largest, std::abs(number));
     }
-    const double count = static_cast<double>(numbers.size());
+    const auto count = static_cast<double>(numbers.size());
     EXPECT_NEAR(two.value(), static_cast<double>(exact), count * largest * std::exp2(-35));
     EXPECT_NEAR(three.value(), static_cast<double>(exact), count * largest * std::exp2(-52));
   }

@@ -121,6 +121,7 @@ TEST(FrameBox, RefusesBoxesWithoutExtent) {
 
 TEST(Camera, OfGivenRaysHasOneForEachPixelWhateverThePoint) {
   std::vector<CameraRay> rays;
+  rays.reserve(6);
   for (int i = 0; i < 6; ++i) rays.push_back({Vec3d(i, 0, 0), Vec3f(0, 0, 1)});
   const Camera camera = Camera::of_rays(rays, 3, 2);
   for (const float offset : {0.25F, 0.5F, 0.75F}) {
