@@ -12,13 +12,14 @@ namespace {
 
 /// Seeds of pilots differ from those of their pictures.
 constexpr uint64_t kPilotSeed = 0x6A09E667F3BCC908U;
-constexpr uint32_t kFirstPilot = 4;
 constexpr double kShareOfPilot = 1.0 / 16;
 /// More samples than the pilot asks for, by its own noise and that of the picture.
 constexpr double kMargin = 1.05;
 constexpr double kMostSamples = 1U << 30;
 
 }  // namespace
+
+uint64_t pilot_seed(uint64_t seed) { return seed ^ kPilotSeed; }
 
 double relative_noise(const Film& film) {
   double sum = 0;
@@ -34,9 +35,24 @@ double relative_noise(const Film& film) {
   return std::sqrt(variance / values) / std::abs(sum / values);
 }
 
+NoisePlan plan_of_pilot(const Film& pilot, double noise, uint32_t most) {
+  NoisePlan plan;
+  plan.pilot_samples = pilot.sample_counts().fewest;
+  plan.pilot_noise = relative_noise(pilot);
+  if (!std::isfinite(plan.pilot_noise)) {
+    fail("the noise of this picture is not known, as the variance of a pixel is infinite");
+  }
+  const double limit = most > 0 ? most : kMostSamples;
+  const double needed =
+      kMargin * plan.pilot_samples * (plan.pilot_noise / noise) * (plan.pilot_noise / noise);
+  plan.samples = static_cast<uint32_t>(std::clamp(std::ceil(needed), 2.0, std::max(2.0, limit)));
+  plan.is_known = plan.pilot_samples >= kShareOfPilot * plan.samples;
+  return plan;
+}
+
 RenderSettings pilot_settings(const RenderSettings& settings) {
   RenderSettings pilot = settings;
-  pilot.walk.seed ^= kPilotSeed;
+  pilot.walk.seed = pilot_seed(pilot.walk.seed);
   pilot.first_sample = 0;
   pilot.samples = 0;
   pilot.time_limit = 0;
@@ -52,21 +68,11 @@ RenderSettings pilot_settings(const RenderSettings& settings) {
 NoisePlan plan_noise(const PathScene& scene, ColorMode mode, const RenderSettings& settings,
                      double noise, const ProgressFunction& progress) {
   RenderSettings pilot = pilot_settings(settings);
-  const double most = settings.samples > 0 ? settings.samples : kMostSamples;
-  NoisePlan plan;
   for (pilot.samples = kFirstPilot;; pilot.samples *= 2) {
     RenderResult result = render_scene(scene, mode, pilot, progress);
-    plan.interrupted = result.interrupted;
-    if (plan.interrupted) return plan;
-    plan.pilot_samples = pilot.samples;
-    plan.pilot_noise = relative_noise(result.film);
-    if (!std::isfinite(plan.pilot_noise)) {
-      fail("the noise of this picture is not known, as the variance of a pixel is infinite");
-    }
-    const double needed =
-        kMargin * pilot.samples * (plan.pilot_noise / noise) * (plan.pilot_noise / noise);
-    plan.samples = static_cast<uint32_t>(std::clamp(std::ceil(needed), 2.0, std::max(2.0, most)));
-    if (pilot.samples >= kShareOfPilot * plan.samples) return plan;
+    if (result.interrupted) return {.interrupted = true};
+    const NoisePlan plan = plan_of_pilot(result.film, noise, settings.samples);
+    if (plan.is_known) return plan;
     pilot.before = std::make_shared<RenderedBefore>(
         RenderedBefore{std::move(result.film), result.counts, result.seconds});
   }

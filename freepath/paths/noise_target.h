@@ -21,8 +21,21 @@ struct NoisePlan {
   uint32_t samples = 0;        ///< Of each pixel, that the noise takes.
   uint32_t pilot_samples = 0;  ///< That it took to know.
   double pilot_noise = 0;      ///< Of the pilot's picture.
+  bool is_known = false;       ///< Whether the pilot had samples enough to tell.
   bool interrupted = false;
 };
+
+/// Samples of the first pilot; the others have twice as many as the one before, and go on with it.
+inline constexpr uint32_t kFirstPilot = 4;
+/// Seed of the pilots of a picture.
+uint64_t pilot_seed(uint64_t seed);
+
+/// What a pilot tells: plan_noise() step by step, for who renders pilots elsewhere.
+/// @param pilot of pilot_seed(), with the same samples of each pixel, kFirstPilot · 2^n
+/// @param noise to reach, as relative_noise()
+/// @param most samples that are planned; 0: no limit
+/// @throws Error where its variance is infinite
+NoisePlan plan_of_pilot(const Film& pilot, double noise, uint32_t most);
 
 /// The number of samples that a picture takes to have a noise, by a pilot: a picture of the same
 /// scene by another seed, of 4, 8, 16, ... samples, until it has a 16th of the samples that are

@@ -73,11 +73,6 @@ def picture_options(
     return options
 
 
-def planned_samples(scene: Scene, **how: Any) -> int:
-    """Return the number of samples that `render` would take of each pixel, by a pilot for a noise."""
-    return _freepath.plan_samples(scene._core, picture_options(scene, **how))
-
-
 def facts_of(scene: Scene, options: _freepath.RenderOptions) -> Facts:
     """Return what a picture depends on and the library doesn't tell of.
 

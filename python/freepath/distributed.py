@@ -11,14 +11,16 @@ import pickle
 import threading
 import warnings
 from collections import OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
+from . import _freepath
 from ._arrays import as_count
 from ._film import Film, merge
-from ._freepath import Error
-from ._picture_options import picture_options, planned_samples
+from ._freepath import Error, version
+from ._picture_options import picture_options
 from ._render import Picture, checked, film_of_part
 from ._sampling import threads_of
 from ._scene import Scene
@@ -55,16 +57,16 @@ def render(
         scene: what to render.
         client: `dask.distributed.Client` of the cluster.
         spp: samples of each pixel [64, or what the scene's file says].
-        noise: the noise to reach, as `freepath.render` has it; the pilot is one task.
+        noise: the noise to reach, as `freepath.render` has it; pilots are shared out, too.
         parts: tasks that the samples are shared out to [four for each thread of the workers that
             there are]. Some seconds for each keep the overhead low.
-        on_result: called with the picture so far whenever a part has come, but with the whole one;
-            pixels have the samples of the parts that are there. False ends the rendering, and the
-            picture so far is returned.
+        on_result: called with the picture so far whenever a part but the last has come; its pixels
+            have the samples of the parts that are there. False ends the rendering, and the picture
+            so far is returned.
         retries: how often a task that failed is tried again. A task whose worker is lost is given to
             another one by Dask (`distributed.scheduler.allowed-failures` times).
-        threads: of a task. A worker works on as many tasks at a time as it has threads for Dask; on a
-            worker with one, which has a machine for itself, give 0: as many as the machine has.
+        threads: of a task. A worker works on as many tasks at a time as it has threads for Dask; on
+            one with a single thread and a machine for itself, give 0: as many as the machine has.
         **how: seed, color, layers, crop, tracker and others, as `freepath.render` has them.
 
     Returns:
@@ -87,27 +89,20 @@ def render(
     if parts is not None:
         parts = as_count(parts, "parts", 1, 2**20)
     # Errors of options are told before anything is sent.
-    samples = planned_samples(scene, spp=spp, **how)
-    facts = dict(scene._facts())
-    sent = _send(dask, client, scene)
+    options = picture_options(scene, spp=spp, noise=noise, **how)
+    samples = _freepath.settled_samples(scene._core, options)
+    crew = _Crew(dask, client, _send(client, scene), dict(scene._facts()), retries)
+    parts = parts or _standard_parts(client)
     if noise is not None:
-        planning = client.submit(
-            _plan, sent, {**how, "spp": spp, "noise": noise}, pure=False, retries=retries
-        )
-        samples = planning.result()
-    ranges = _ranges(samples, parts or _standard_parts(client))
-    futures = client.map(_render_part, ranges, scene=sent, how=how, pure=False, retries=retries)
+        samples = _planned_samples(crew, scene, options, {**how, "layers": "none"}, parts)
     merged = _Merged()
-    try:
-        for future, data in dask.as_completed(futures, with_results=True):
-            future.release()
-            merged.add(_same_scene(Film.from_bytes(data), facts))
-            if merged.parts == len(ranges) or on_result is None:
+    with closing(crew.films(_ranges(0, samples, parts), how)) as films:
+        for film in films:
+            merged.add(film)
+            if merged.samples == samples or on_result is None:
                 continue
             if on_result(merged.film().picture()) is False:
                 break
-    finally:
-        client.cancel([future for future in futures if not future.done()])
     return checked(merged.film().picture())
 
 
@@ -137,19 +132,75 @@ def _standard_parts(client: Any) -> int:
     return _PARTS_OF_A_THREAD * threads if threads else _PARTS_OF_NO_WORKERS
 
 
-def _ranges(samples: int, parts: int) -> list[tuple[int, int]]:
+def _ranges(first: int, end: int, parts: int) -> list[tuple[int, int]]:
     """Samples shared out to at most so many parts."""
-    parts = min(parts, samples)
-    edges = [samples * i // parts for i in range(parts + 1)]
+    parts = min(parts, end - first)
+    edges = [first + (end - first) * i // parts for i in range(parts + 1)]
     return list(zip(edges, edges[1:]))
+
+
+@dataclass(frozen=True)
+class _Crew:
+    """Workers that have a scene, or will have it.
+
+    Attributes:
+        dask: the module `distributed`.
+        client: of the cluster.
+        scene: future of the scene.
+        facts: what pictures of it depend on.
+        retries: of a task that fails.
+    """
+
+    dask: Any
+    client: Any
+    scene: Any
+    facts: dict[str, str]
+    retries: int
+
+    def films(self, ranges: list[tuple[int, int]], how: dict[str, Any]) -> Generator[Film, None, None]:
+        """Render ranges of samples, and yield their films in the order in which they come.
+
+        What is not rendered when the iterator is closed is cancelled.
+        """
+        futures = self.client.map(
+            _render_part, ranges, scene=self.scene, how=how, pure=False, retries=self.retries
+        )
+        try:
+            for future, data in self.dask.as_completed(futures, with_results=True):
+                future.release()
+                yield _same_scene(Film.from_bytes(data), self.facts)
+        finally:
+            self.client.cancel([future for future in futures if not future.done()])
+
+
+def _planned_samples(
+    crew: _Crew, scene: Scene, options: _freepath.RenderOptions, how: dict[str, Any], parts: int
+) -> int:
+    """Return the number of samples that a noise takes, as `render` plans it in one process."""
+    seed, end, most = _freepath.first_pilot(scene._core, options)
+    noise = options.noise
+    assert noise is not None
+    first = 0
+    pilot = _Merged()
+    while True:
+        for film in crew.films(_ranges(first, end, parts), {**how, "seed": seed}):
+            pilot.add(film)
+        samples, is_known = _freepath.samples_by_pilot(pilot.film()._core, noise, most)
+        if is_known:
+            return samples
+        first, end = end, 2 * end
 
 
 def _same_scene(film: Film, facts: dict[str, str]) -> Film:
     """Return a film of a worker whose scene is that of the client.
 
     Raises:
-        Error: where it isn't, naming what differs.
+        Error: where it isn't, naming what differs; where the worker has another freepath.
     """
+    if film._core.version != version:
+        raise Error(
+            f"a worker has freepath {film._core.version} and not {version}; give workers the same"
+        )
     theirs = film.facts
     for name, value in facts.items():
         if theirs.get(name) != value:
@@ -164,12 +215,12 @@ class _Merged:
     """Films of ranges of samples in any order: one of those without a gap, and the others."""
 
     def __init__(self) -> None:
-        self.parts = 0
+        self.samples = 0  # of each pixel
         self._films: dict[int, Film] = {}  # by first sample
 
     def add(self, film: Film) -> None:
         """Add a film, and merge it with those that it adjoins."""
-        self.parts += 1
+        self.samples += len(film.samples)
         self._films[film.samples.start] = film
         run: list[Film] = []
         for film in self._in_order():
@@ -204,7 +255,7 @@ class _SentScene:
     data: bytes
 
 
-def _send(dask: Any, client: Any, scene: Scene) -> Any:
+def _send(client: Any, scene: Scene) -> Any:
     """Give the scene to the cluster as the result of a task, which can be repeated if it is lost."""
     data = pickle.dumps(scene, protocol=pickle.HIGHEST_PROTOCOL)
     sent = _SentScene(repr(scene._facts()), data)
@@ -233,11 +284,6 @@ def _scene_of(sent: _SentScene) -> Scene:
         while len(_built) > _SCENES_KEPT:
             _built.popitem(last=False)
         return scene
-
-
-def _plan(sent: _SentScene, how: dict[str, Any]) -> int:
-    """Return the number of samples that a noise takes; runs on a worker."""
-    return planned_samples(_scene_of(sent), **how)
 
 
 def _render_part(samples: tuple[int, int], scene: _SentScene, how: dict[str, Any]) -> bytes:

@@ -43,8 +43,8 @@ void check_voxels(const Field& field) {
   }
 }
 
-/// Corners of the active voxels, whether the index is a list, places of bricks (n, 3), the number
-/// of the brick at each, and the voxels of all bricks (m, 512).
+/// Corners of the active voxels, origin and size of the index, whether it is a list, places of
+/// bricks (n, 3), the number of the brick at each, and the voxels of all bricks (m, 512).
 nb::tuple bricks_of(const Field& field) {
   check_voxels(field);
   const BrickMap& map = field.voxels;
@@ -58,7 +58,8 @@ nb::tuple bricks_of(const Field& field) {
   }
   ArrayMemory<float> voxels(map.voxels().size());
   std::copy(map.voxels().begin(), map.voxels().end(), voxels.data());
-  return nb::make_tuple(corner_of(map.active_min()), corner_of(map.active_max()), map.is_sparse(),
+  return nb::make_tuple(corner_of(map.active_min()), corner_of(map.active_max()),
+                        corner_of(map.origin()), corner_of(map.brick_counts()), map.is_sparse(),
                         std::move(places).to_numpy({placed.size(), 3}),
                         std::move(bricks).to_numpy({placed.size()}),
                         std::move(voxels).to_numpy({map.brick_count(), kBrickVoxels}));
@@ -67,6 +68,7 @@ nb::tuple bricks_of(const Field& field) {
 /// The inverse of bricks_of().
 std::shared_ptr<Field> field_of_bricks(const std::string& name, const Matrix& transform,
                                        const Corner& active_min, const Corner& active_max,
+                                       const Corner& origin, const Corner& brick_counts,
                                        bool is_sparse, const Places& places, const Bricks& bricks,
                                        const Voxels& voxels) {
   const std::size_t count = bricks.shape(0);
@@ -79,7 +81,10 @@ std::shared_ptr<Field> field_of_bricks(const std::string& name, const Matrix& tr
     if (bricks.data()[i] >= uses.size()) fail("{}: its bricks do not go together", name);
     ++uses[bricks.data()[i]];
   }
-  BrickMapBuilder builder(voxel_of(active_min), voxel_of(active_max), voxels.shape(0),
+  // The bounds that the index is that of; it may be larger than that of the active voxels.
+  const Vec3i first = voxel_of(origin) + Vec3i(2);
+  const Vec3i last = voxel_of(origin) + voxel_of(brick_counts) * BrickMap::kBrickSize - Vec3i(3);
+  BrickMapBuilder builder(first, last, std::max<std::size_t>(voxels.shape(0), 1) - 1,
                           is_sparse ? count : BrickMapBuilder::kUnknown);
   for (std::size_t i = 0; i < count; ++i) {
     const int32_t* const place = places.data() + 3 * i;
@@ -91,6 +96,7 @@ std::shared_ptr<Field> field_of_bricks(const std::string& name, const Matrix& tr
       std::copy_n(values, kBrickVoxels, builder.add_brick(brick).begin());
     }
   }
+  builder.set_active_bounds(voxel_of(active_min), voxel_of(active_max));
   return std::make_shared<Field>(Field{name, std::move(builder).finish(), matrix_of(transform)});
 }
 
@@ -123,8 +129,9 @@ void bind_field_states(nb::module_& module) {
   module.def("bricks_of_field", &bricks_of, nb::arg("field"));
   module.def("digest_of_field", &digest_of, nb::arg("field"));
   module.def("field_of_bricks", &field_of_bricks, nb::arg("name"), nb::arg("transform"),
-             nb::arg("active_min"), nb::arg("active_max"), nb::arg("is_sparse"), nb::arg("places"),
-             nb::arg("bricks"), nb::arg("voxels"));
+             nb::arg("active_min"), nb::arg("active_max"), nb::arg("origin"),
+             nb::arg("brick_counts"), nb::arg("is_sparse"), nb::arg("places"), nb::arg("bricks"),
+             nb::arg("voxels"));
 }
 
 }  // namespace freepath::python

@@ -95,6 +95,7 @@ Facts file_facts(const std::vector<std::string>& files) {
 void bind_films(nb::module_& module) {
   nb::class_<PythonFilm>(module, "Film")
       .def_prop_ro("seed", [](const PythonFilm& self) { return self.header.identity.seed; })
+      .def_prop_ro("version", [](const PythonFilm& self) { return self.header.identity.version; })
       .def_prop_ro("facts", [](const PythonFilm& self) { return self.header.identity.facts; })
       .def_prop_ro("first_sample", [](const PythonFilm& self) { return self.header.first_sample; })
       .def_prop_ro("most_samples", [](const PythonFilm& self) { return self.header.samples.most; })

@@ -227,15 +227,21 @@ PythonPicture render(const PythonScene& scene, const RenderOptions& options,
   return picture;
 }
 
-/// The number of samples that render() would take: 0 where the time alone says it.
-uint32_t plan_samples(const PythonScene& scene, const RenderOptions& options) {
-  const ColorMode color = color_mode(scene, options);
+/// The number of samples that render() would take where no noise is asked for.
+uint32_t settled_samples(const PythonScene& scene, const RenderOptions& options) {
+  return render_settings(scene, options).samples;
+}
+
+/// Seed and samples of the first pilot of a picture, and the most samples that it may have, 0: any.
+std::array<uint64_t, 3> first_pilot(const PythonScene& scene, const RenderOptions& options) {
   const RenderSettings settings = render_settings(scene, options);
-  if (!options.noise) return settings.samples;
-  return result_interruptibly([&](const std::atomic<bool>& stop) {
-    const std::shared_lock no_other_camera(scene.camera_gate);
-    return samples_for(scene, color, options, settings, stop);
-  });
+  return {pilot_seed(settings.walk.seed), kFirstPilot, options.samples ? settings.samples : 0};
+}
+
+/// The samples that a noise takes by a pilot, and whether it knows.
+std::pair<uint32_t, bool> samples_by_pilot(const PythonFilm& pilot, double noise, uint32_t most) {
+  const NoisePlan plan = plan_of_pilot(*pilot.film, noise, most);
+  return {plan.samples, plan.is_known};
 }
 
 /// A scene that is seen along given rays, for as long as it lives.
@@ -313,7 +319,10 @@ void bind_rendering(nb::module_& module) {
       .def_rw("shadow_roulette", &RenderOptions::shadow_roulette);
   module.def("radiance", &radiance, nb::arg("scene"), nb::arg("options"), nb::arg("origins"),
              nb::arg("directions"), nb::arg("t_max"), nb::arg("width"));
-  module.def("plan_samples", &plan_samples, nb::arg("scene"), nb::arg("options"));
+  module.def("first_pilot", &first_pilot, nb::arg("scene"), nb::arg("options"));
+  module.def("samples_by_pilot", &samples_by_pilot, nb::arg("pilot"), nb::arg("noise"),
+             nb::arg("most"));
+  module.def("settled_samples", &settled_samples, nb::arg("scene"), nb::arg("options"));
   module.def("render", &render, nb::arg("scene"), nb::arg("options"), nb::arg("callback").none(),
              nb::arg("wants_pictures"));
 }
