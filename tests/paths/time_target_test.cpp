@@ -26,7 +26,8 @@ TEST(TimeTarget, SamplesFillTheTime) {
   settings.clock = counted_clock(0.01);
   const RenderResult result = render_scene(scene, ColorMode::kRgb, settings);
   EXPECT_EQ(result.samples, plan.samples);
-  EXPECT_GT(plan.seconds + result.seconds, 80);
+  // Flights, which this clock counts, are not as even as time is.
+  EXPECT_GT(plan.seconds + result.seconds, 70);
   EXPECT_LT(plan.seconds + result.seconds, 105);
 }
 
