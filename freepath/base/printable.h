@@ -67,4 +67,12 @@ inline std::string printable(std::string_view text, char kept = 0) {
   return shown;
 }
 
+/// The begin of a text from a file, for a message, as printable() shows it: what is longer ends in
+/// "...".
+inline std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 120;
+  if (text.size() <= kLongest) return printable(text);
+  return printable(text.substr(0, kLongest)) + "...";
+}
+
 }  // namespace freepath

@@ -285,7 +285,7 @@ class TextPlanes : public PlaneSource {
     if (word_.empty()) text_->file().fail_damaged("its values end too soon");
     if (!number) {
       text_->file().fail_damaged(
-          fmt::format("'{}' among its values is no number", printable(word_)));
+          fmt::format("'{}' among its values is no number", excerpt(word_)));
     }
     return *number;
   }

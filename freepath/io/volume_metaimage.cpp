@@ -48,7 +48,7 @@ class MetaHeader {
       if (trimmed(line).empty()) continue;
       auto [key, value] = meta_field(line);
       if (key.empty()) {
-        file.fail_damaged(fmt::format("'{}' is no field of a header", printable(line)));
+        file.fail_damaged(fmt::format("'{}' is no field of a header", excerpt(line)));
       }
       fields_.insert_or_assign(std::move(key), std::move(value));
     }
@@ -79,7 +79,7 @@ class MetaHeader {
     if (value == "true" || value == "1") return true;
     if (value == "false" || value == "0") return false;
     fail("{}: {} is neither True nor False, but '{}'; correct it", file_.name(), *names.begin(),
-         printable(value));
+         excerpt(value));
   }
 
   std::vector<double> numbers(std::initializer_list<const char*> names, std::size_t count,
@@ -159,7 +159,7 @@ VolumeReaderPointer open_metaimage(const VolumeFile& file) {
   const MetaHeader header(file);
   if (header.numbers({"NDims"}, 1, header.get("NDims"))[0] != 3) {
     fail("{}: NDims is {}; images of 3 dimensions can be read", file.name(),
-         printable(header.get("NDims")));
+         excerpt(header.get("NDims")));
   }
   DenseGrid grid;
   const auto sizes = header.numbers({"DimSize"}, 3, header.get("DimSize"));
@@ -169,7 +169,7 @@ VolumeReaderPointer open_metaimage(const VolumeFile& file) {
   const int components = meta_components(header);
   grid.info.name = header.find({"Name"}).value_or("density");
   grid.info.grid_class = "samples";
-  set_voxel_type(type, printable(type_name), components, grid);
+  set_voxel_type(type, excerpt(type_name), components, grid);
   if (!grid.info.reason.empty()) fail("{}: {}", file.name(), grid.info.reason);
   grid.info.index_to_world = meta_transform(header);
   const bool binary = header.flag({"BinaryData"}), packed = header.flag({"CompressedData"});

@@ -171,7 +171,7 @@ VolumeReaderPointer open_netcdf(const VolumeFile& file, const LoadOptions& optio
             return netcdf->level(i, axes, z, time);
           };
         }));
-    grids.back().info.value_unit = printable(variable.text("units"));
+    grids.back().info.value_unit = excerpt(variable.text("units"));
   }
   if (grids.empty()) {
     fail(

@@ -77,13 +77,13 @@ class NrrdHeader {
       if (line.starts_with('#') || line.find(":=") != line.npos) continue;
       const std::size_t colon = line.find(": ");
       if (colon == line.npos) {
-        file.fail_damaged(fmt::format("'{}' is no field of a header", printable(line)));
+        file.fail_damaged(fmt::format("'{}' is no field of a header", excerpt(line)));
       }
       const std::string name = lower_case(trimmed(std::string_view(line).substr(0, colon)));
       const std::string value(trimmed(std::string_view(line).substr(colon + 2)));
       if (!fields_.emplace(name, value).second) {
         fail("{}: its header has the field '{}' twice; leave one out", file.name(),
-             printable(name));
+             excerpt(name));
       }
     }
     end_ = cursor.offset();
@@ -164,7 +164,7 @@ Vec3d nrrd_vector(const VolumeFile& file, std::string_view what, std::string_vie
   text = trimmed(text);
   if (!text.starts_with('(') || !text.ends_with(')')) {
     fail("{}: '{}' of {} in its header is no vector of three numbers, (x,y,z); correct it",
-         file.name(), printable(text), what);
+         file.name(), excerpt(text), what);
   }
   const auto numbers = header_numbers(file, what, text.substr(1, text.size() - 2), 3);
   return {numbers[0], numbers[1], numbers[2]};
@@ -290,13 +290,13 @@ VolumeReaderPointer open_nrrd(const VolumeFile& file) {
   const bool raw = encoding == "raw", packed = encoding == "gzip" || encoding == "gz";
   if (!raw && !packed && encoding != "ascii" && encoding != "text" && encoding != "txt") {
     fail("{}: its encoding '{}' is not known; write it raw, gzip or ascii", file.name(),
-         printable(encoding));
+         excerpt(encoding));
   }
   DenseGrid grid;
   grid.counts = axes.counts;
   grid.info.name = header.find({"content"}).value_or("density");
   grid.info.grid_class = "samples";
-  set_voxel_type(type, printable(type_name), axes.components, grid);
+  set_voxel_type(type, excerpt(type_name), axes.components, grid);
   if (!grid.info.reason.empty()) fail("{}: {}", file.name(), grid.info.reason);
   const auto directions = header.find({"space directions"});
   grid.info.index_to_world =
@@ -308,7 +308,7 @@ VolumeReaderPointer open_nrrd(const VolumeFile& file) {
     const std::string order = lower_case(header.get({"endian"}));
     if (order != "little" && order != "big") {
       fail("{}: its endian '{}' is neither little nor big; correct it", file.name(),
-           printable(order));
+           excerpt(order));
     }
     if (order == "big") numbers.order = std::endian::big;
   }

@@ -95,7 +95,7 @@ std::vector<double> header_numbers(const VolumeFile& file, std::string_view what
     const std::optional<double> number = number_of(word);
     if (!number || !std::isfinite(*number)) {
       fail("{}: '{}' of {} in its header is no finite number; correct it", file.name(),
-           printable(word), what);
+           excerpt(word), what);
     }
     numbers.push_back(*number);
   }

@@ -70,7 +70,7 @@ std::shared_ptr<const VtiDocument> read_vti_document(const VolumeFile& file) {
   const std::string_view encoding = node.attribute("encoding").value();
   if (encoding != "raw" && encoding != "base64") {
     fail("{}: the encoding \"{}\" of its appended data is not known; write raw or base64",
-         file.name(), printable(encoding));
+         file.name(), excerpt(encoding));
   }
   document->appended_base64 = encoding == "base64";
   TextCursor cursor(file, behind_tag);
@@ -93,19 +93,19 @@ VtiEncoding vti_encoding(const VolumeFile& file, const pugi::xml_node& root) {
   const std::string_view order = root.attribute("byte_order").as_string("LittleEndian");
   if (order != "LittleEndian" && order != "BigEndian") {
     fail("{}: its byte_order \"{}\" is neither LittleEndian nor BigEndian; correct it", file.name(),
-         printable(order));
+         excerpt(order));
   }
   if (order == "BigEndian") encoding.order = std::endian::big;
   const std::string_view word = root.attribute("header_type").as_string("UInt32");
   if (word != "UInt32" && word != "UInt64") {
     fail("{}: its header_type \"{}\" is neither UInt32 nor UInt64; correct it", file.name(),
-         printable(word));
+         excerpt(word));
   }
   if (word == "UInt64") encoding.word = 8;
   const std::string_view compressor = root.attribute("compressor").value();
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
     fail("{}: its compressor {} is not known; write it with vtkZLibDataCompressor, or none",
-         file.name(), printable(compressor));
+         file.name(), excerpt(compressor));
   }
   encoding.packed = !compressor.empty();
   return encoding;
@@ -116,7 +116,7 @@ std::vector<double> attribute_numbers(const VolumeFile& file, const pugi::xml_no
                                       const char* name, std::size_t count) {
   const pugi::xml_attribute attribute = node.attribute(name);
   if (!attribute) {
-    fail("{}: <{}> has no {}; correct it", file.name(), printable(node.name()), name);
+    fail("{}: <{}> has no {}; correct it", file.name(), excerpt(node.name()), name);
   }
   return header_numbers(file, name, attribute.value(), count);
 }
@@ -186,11 +186,11 @@ DenseGrid vti_grid(const VolumeFile& file, const std::shared_ptr<const VtiDocume
   const int components = array.attribute("NumberOfComponents").as_int(1);
   const std::string_view type_name = array.attribute("type").value();
   const std::optional<NumberType> type = vtk_number_type(type_name);
-  set_voxel_type(type, printable(type_name), components, grid);
+  set_voxel_type(type, excerpt(type_name), components, grid);
   if (!grid.info.reason.empty()) return grid;
   const std::string_view format = array.attribute("format").as_string("ascii");
   if (format != "ascii" && format != "binary" && format != "appended") {
-    grid.info.reason = fmt::format("its format \"{}\" is not known", printable(format));
+    grid.info.reason = fmt::format("its format \"{}\" is not known", excerpt(format));
     return grid;
   }
   const std::size_t voxel_bytes = size_of(*type) * static_cast<std::size_t>(components);
@@ -225,7 +225,7 @@ VolumeReaderPointer open_vti(const VolumeFile& file) {
   const std::string_view type = root.attribute("type").value();
   if (type != "ImageData") {
     fail("{}: it holds {}, not ImageData; resample it to an image (ResampleToImage in ParaView)",
-         file.name(), type.empty() ? "data of no type" : printable(type));
+         file.name(), type.empty() ? "data of no type" : excerpt(type));
   }
   const VtiEncoding encoding = vti_encoding(file, root);
   const pugi::xml_node image_node = root.child("ImageData");

@@ -40,18 +40,18 @@ class LegacyVtk {
     const std::string encoding(trimmed(cursor_.line()));
     if (encoding != "ASCII" && encoding != "BINARY") {
       file_.fail_damaged(
-          fmt::format("its third line is '{}' and neither ASCII nor BINARY", printable(encoding)));
+          fmt::format("its third line is '{}' and neither ASCII nor BINARY", excerpt(encoding)));
     }
     text_ = encoding == "ASCII";
     if (const std::string word = cursor_.word(); word != "DATASET") {
-      file_.fail_damaged(fmt::format("'{}' where DATASET belongs", printable(word)));
+      file_.fail_damaged(fmt::format("'{}' where DATASET belongs", excerpt(word)));
     }
     const std::string kind = cursor_.word();
     if (kind != "STRUCTURED_POINTS") {
       fail(
           "{}: it holds {}, not STRUCTURED_POINTS; resample it to an image (ResampleToImage in "
           "ParaView)",
-          file_.name(), printable(kind));
+          file_.name(), excerpt(kind));
     }
     // These may stand in any order, with fields of the whole file among them.
     bool has_dimensions = false, has_origin = false, has_spacing = false;
@@ -68,7 +68,7 @@ class LegacyVtk {
         has_spacing = true;
       } else if (!read_general(keyword)) {
         file_.fail_damaged(
-            fmt::format("'{}' where DIMENSIONS, ORIGIN or SPACING belongs", printable(keyword)));
+            fmt::format("'{}' where DIMENSIONS, ORIGIN or SPACING belongs", excerpt(keyword)));
       }
     }
   }
@@ -101,7 +101,7 @@ class LegacyVtk {
     const double value = header_numbers(file_, what, word, 1)[0];
     constexpr double kMost = 1e12;
     if (!(value >= 0 && value <= kMost) || value != std::floor(value)) {
-      file_.fail_damaged(fmt::format("{} of {}", printable(word), what));
+      file_.fail_damaged(fmt::format("{} of {}", excerpt(word), what));
     }
     return static_cast<uint64_t>(value);
   }
@@ -134,7 +134,7 @@ class LegacyVtk {
   void read_attribute(const std::string& keyword) {
     if (samples_count_ == 0) {
       fail("{}: {} stands before POINT_DATA or CELL_DATA, and is not known there; correct it",
-           file_.name(), printable(keyword));
+           file_.name(), excerpt(keyword));
     }
     if (keyword == "SCALARS") {
       const auto words = split_words(cursor_.line());
@@ -151,7 +151,7 @@ class LegacyVtk {
       skip_numbers(NumberType::kUint8, 4 * count("LOOKUP_TABLE"));
     } else {
       fail("{}: its {} can't be read; write scalars, vectors or fields alone", file_.name(),
-           printable(keyword));
+           excerpt(keyword));
     }
   }
 
@@ -170,7 +170,7 @@ class LegacyVtk {
       fail(
           "{}: array \"{}\" has {} numbers of type {} in a sample, which can't be read; leave it "
           "out",
-          file_.name(), printable(name), components, printable(type_name));
+          file_.name(), excerpt(name), components, excerpt(type_name));
     }
     const int channels = static_cast<int>(components);
     DenseGrid grid = vtk_grid(image_, samples_, name);
