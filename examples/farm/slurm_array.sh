@@ -30,8 +30,10 @@ if [ ! -e "$part" ]; then
   [ "$status" -eq 0 ] || exit "$status"
 fi
 
-# The task that makes the folder merges; the others leave it to that one.
+# One task merges, whoever has the lock; one that is killed meanwhile leaves it, and is started again.
 done_parts=("$parts"/*[0-9].film)
-if [ "${#done_parts[@]}" -eq "$tasks" ] && mkdir "$parts/merging" 2>/dev/null; then
-  freepath merge "${done_parts[@]}" -o "$picture" || { rmdir "$parts/merging"; exit 1; }
+exec 9>"$parts/lock"
+if [ "${#done_parts[@]}" -eq "$tasks" ] && flock -n 9 && [ ! -e "$parts/merged" ]; then
+  freepath merge "${done_parts[@]}" -o "$picture"
+  touch "$parts/merged"
 fi

@@ -284,8 +284,7 @@ class TextPlanes : public PlaneSource {
     const std::optional<double> number = number_of(word_);
     if (word_.empty()) text_->file().fail_damaged("its values end too soon");
     if (!number) {
-      text_->file().fail_damaged(
-          fmt::format("'{}' among its values is no number", excerpt(word_)));
+      text_->file().fail_damaged(fmt::format("'{}' among its values is no number", excerpt(word_)));
     }
     return *number;
   }

@@ -82,8 +82,7 @@ class NrrdHeader {
       const std::string name = lower_case(trimmed(std::string_view(line).substr(0, colon)));
       const std::string value(trimmed(std::string_view(line).substr(colon + 2)));
       if (!fields_.emplace(name, value).second) {
-        fail("{}: its header has the field '{}' twice; leave one out", file.name(),
-             excerpt(name));
+        fail("{}: its header has the field '{}' twice; leave one out", file.name(), excerpt(name));
       }
     }
     end_ = cursor.offset();
