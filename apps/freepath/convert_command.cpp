@@ -105,7 +105,7 @@ double meters_of_option(const std::string& unit, std::string_view option) {
   return *meters;
 }
 
-/// What lengths of a field are multiplied by.
+/// Factor of the lengths of a field.
 double length_scale(const ConvertOptions& options, const LoadedField& loaded) {
   if (options.unit.empty()) {
     if (options.input_unit.empty()) return 1;

@@ -24,7 +24,7 @@ struct FilmOptions {
   bool transparent = false;
 };
 
-/// What a denoiser looks at; it leaves the background as it is.
+/// Layers that a denoiser looks at; it leaves the background as it is.
 inline constexpr LayerSet kDenoiserLayers = {Layer::kAlbedo, Layer::kNormal, Layer::kBackground};
 
 /// What they mean.

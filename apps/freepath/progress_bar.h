@@ -9,7 +9,7 @@
 
 namespace freepath::program {
 
-/// How progress is told.
+/// Forms in which progress is told.
 enum class ProgressForm {
   kAutomatic,  ///< A bar where standard error is a terminal, else lines.
   kBar,        ///< A line that changes; nothing where standard error is no terminal.
@@ -31,7 +31,7 @@ class ProgressBar {
   void finish() const;
 
  private:
-  /// What there is to tell.
+  /// Figures of a moment.
   struct State {
     double done = 0;  ///< 0 to 1
     double seconds_left = 0;

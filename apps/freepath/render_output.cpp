@@ -19,6 +19,7 @@
 #include "freepath/base/version.h"
 #include "freepath/io/aside_file.h"
 #include "freepath/io/image_aside.h"
+#include "freepath/tracking/statistics_fields.h"
 
 namespace freepath::program {
 namespace {
@@ -60,7 +61,7 @@ nlohmann::json volumes_json(const RenderReport& report) {
   return list;
 }
 
-/// Of what was done.
+/// Adds the metadata of what was done.
 void add_metadata(Image& image, const RenderResult& result) {
   const WalkStatistics counts = result.counts.statistics();
   const auto integer = [](uint64_t value) { return static_cast<int64_t>(value); };
@@ -84,16 +85,9 @@ void add_metadata(Image& image, const RenderResult& result) {
 }
 
 nlohmann::json counts_json(const WalkStatistics& counts) {
-  return {{"rays", counts.rays},
-          {"tentative_collisions", counts.tentative_collisions},
-          {"null_collisions", counts.null_collisions},
-          {"real_collisions", counts.real_collisions},
-          {"control_collisions", counts.control_collisions},
-          {"lookups", counts.lookups},
-          {"super_voxel_steps", counts.super_voxel_steps},
-          {"bound_violations", counts.bound_violations},
-          {"negative_weights", counts.negative_weights},
-          {"largest_weight", counts.largest_weight}};
+  nlohmann::json json;
+  visit_statistics(counts, [&](const char* name, const auto& count) { json[name] = count; });
+  return json;
 }
 
 nlohmann::json statistics_json(const RenderResult& result, const RenderReport& report) {

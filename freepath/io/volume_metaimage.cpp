@@ -38,9 +38,9 @@ std::pair<std::string, std::string> meta_field(std::string_view line) {
 }
 
 /// The fields of a header, which ends with the name of the values' file.
-class MetaHeader {
+class MetaHeader : public HeaderFields {
  public:
-  explicit MetaHeader(const VolumeFile& file) : file_(file) {
+  explicit MetaHeader(const VolumeFile& file) : HeaderFields(file) {
     TextCursor cursor(file, 0);
     while (fields_.count("ElementDataFile") == 0) {
       if (cursor.at_end()) fail("{}: its header has no ElementDataFile; add it", file.name());
@@ -55,25 +55,6 @@ class MetaHeader {
     end_ = cursor.offset();
   }
 
-  const VolumeFile& file() const { return file_; }
-  /// Where the values begin that stand behind the header.
-  uint64_t end() const { return end_; }
-
-  /// The value of a field, under any of its names; nothing where it isn't given.
-  std::optional<std::string> find(std::initializer_list<const char*> names) const {
-    for (const char* const name : names) {
-      const auto found = fields_.find(name);
-      if (found != fields_.end()) return found->second;
-    }
-    return std::nullopt;
-  }
-
-  std::string get(const char* name) const {
-    const auto value = find({name});
-    if (!value) fail("{}: its header has no {}; add it", file_.name(), name);
-    return *value;
-  }
-
   bool flag(std::initializer_list<const char*> names) const {
     const std::string value = lower_case(find(names).value_or("false"));
     if (value == "true" || value == "1") return true;
@@ -86,11 +67,6 @@ class MetaHeader {
                               const std::string& otherwise) const {
     return header_numbers(file_, *names.begin(), find(names).value_or(otherwise), count);
   }
-
- private:
-  const VolumeFile& file_;
-  std::map<std::string, std::string> fields_;
-  uint64_t end_ = 0;
 };
 
 /// Rows of TransformMatrix are the directions of the axes; the first sample's centre is the offset.
@@ -112,7 +88,7 @@ Matrix4d meta_transform(const MetaHeader& header) {
 
 /// The file that holds the values; null if it is the header's.
 std::shared_ptr<const VolumeFile> meta_data_file(const MetaHeader& header) {
-  const std::string name = header.get("ElementDataFile");
+  const std::string name = header.get({"ElementDataFile"});
   if (name == "LOCAL") return nullptr;
   if (name.starts_with("LIST") || name.find('%') != name.npos) {
     fail("{}: its values stand in several files; write them as one (ITK: itk::ImageFileWriter)",
@@ -157,14 +133,14 @@ bool is_metaimage(const VolumeFile& file) {
 
 VolumeReaderPointer open_metaimage(const VolumeFile& file) {
   const MetaHeader header(file);
-  if (header.numbers({"NDims"}, 1, header.get("NDims"))[0] != 3) {
+  if (header.numbers({"NDims"}, 1, header.get({"NDims"}))[0] != 3) {
     fail("{}: NDims is {}; images of 3 dimensions can be read", file.name(),
-         excerpt(header.get("NDims")));
+         excerpt(header.get({"NDims"})));
   }
   DenseGrid grid;
-  const auto sizes = header.numbers({"DimSize"}, 3, header.get("DimSize"));
+  const auto sizes = header.numbers({"DimSize"}, 3, header.get({"DimSize"}));
   grid.counts = checked_counts(file, "DimSize with", sizes);
-  const std::string type_name = header.get("ElementType");
+  const std::string type_name = header.get({"ElementType"});
   const std::optional<NumberType> type = meta_number_type(type_name);
   const int components = meta_components(header);
   grid.info.name = header.find({"Name"}).value_or("density");

@@ -66,9 +66,9 @@ std::optional<NumberType> nrrd_number_type(const std::string& name) {
 }
 
 /// The fields of a header, by their names in lower case.
-class NrrdHeader {
+class NrrdHeader : public HeaderFields {
  public:
-  explicit NrrdHeader(const VolumeFile& file) : file_(file) {
+  explicit NrrdHeader(const VolumeFile& file) : HeaderFields(file) {
     TextCursor cursor(file, 0);
     cursor.line();  // the magic
     while (!cursor.at_end()) {
@@ -88,27 +88,6 @@ class NrrdHeader {
     end_ = cursor.offset();
   }
 
-  const VolumeFile& file() const { return file_; }
-  /// Where the values begin that stand behind the header.
-  uint64_t end() const { return end_; }
-
-  /// The value of a field, under any of its names; nothing where it isn't given.
-  std::optional<std::string> find(std::initializer_list<const char*> names) const {
-    for (const char* const name : names) {
-      const auto found = fields_.find(name);
-      if (found != fields_.end()) return found->second;
-    }
-    return std::nullopt;
-  }
-
-  std::string get(std::initializer_list<const char*> names) const {
-    const auto value = find(names);
-    if (!value) {
-      fail("{}: its header has no field '{}'; add it", file_.name(), *names.begin());
-    }
-    return *value;
-  }
-
   /// A whole number, 0 where it isn't given.
   double whole(std::initializer_list<const char*> names, double least) const {
     const auto text = find(names);
@@ -121,11 +100,6 @@ class NrrdHeader {
     }
     return value;
   }
-
- private:
-  const VolumeFile& file_;
-  std::map<std::string, std::string> fields_;
-  uint64_t end_ = 0;
 };
 
 /// The axes of space, behind one of colours if there is one.

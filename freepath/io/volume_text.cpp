@@ -115,4 +115,18 @@ std::shared_ptr<const VolumeFile> beside(const VolumeFile& header, const std::st
   }
 }
 
+std::optional<std::string> HeaderFields::find(std::initializer_list<const char*> names) const {
+  for (const char* const name : names) {
+    const auto found = fields_.find(name);
+    if (found != fields_.end()) return found->second;
+  }
+  return std::nullopt;
+}
+
+std::string HeaderFields::get(std::initializer_list<const char*> names) const {
+  const std::optional<std::string> value = find(names);
+  if (!value) fail("{}: its header has no field '{}'; add it", file_.name(), *names.begin());
+  return *value;
+}
+
 }  // namespace freepath::io

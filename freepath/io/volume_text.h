@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +58,25 @@ class TextCursor {
 /// @throws Error that names file and field if there are not so many, or one isn't finite
 std::vector<double> header_numbers(const VolumeFile& file, std::string_view what,
                                    std::string_view text, std::size_t count);
+
+/// The fields of a header in text, by their names, and where it ends.
+class HeaderFields {
+ public:
+  explicit HeaderFields(const VolumeFile& file) : file_(file) {}
+
+  const VolumeFile& file() const { return file_; }
+  /// Where the values begin that stand behind the header.
+  uint64_t end() const { return end_; }
+  /// The value of a field, under any of its names; nothing where it isn't given.
+  std::optional<std::string> find(std::initializer_list<const char*> names) const;
+  /// The same of one that has to be there. @throws Error that names the first of the names
+  std::string get(std::initializer_list<const char*> names) const;
+
+ protected:
+  const VolumeFile& file_;
+  std::map<std::string, std::string> fields_;
+  uint64_t end_ = 0;
+};
 
 /// The file whose name a header has, in the header's folder unless it is absolute.
 /// @throws Error if it isn't there

@@ -20,6 +20,7 @@
 #include "freepath/base/error.h"
 #include "freepath/base/input_file.h"
 #include "freepath/base/json_text.h"
+#include "freepath/tracking/statistics_fields.h"
 
 namespace freepath {
 namespace {
@@ -35,20 +36,6 @@ constexpr std::size_t kPiece = std::size_t{1} << 20;
 constexpr uint64_t kLargestHeader = std::size_t{1} << 26;
 
 /// Both ways between a struct and JSON: `visit(name, member)` for each member.
-template <class Visitor>
-void visit_statistics(WalkStatistics& s, const Visitor& visit) {
-  visit("rays", s.rays);
-  visit("tentative_collisions", s.tentative_collisions);
-  visit("null_collisions", s.null_collisions);
-  visit("real_collisions", s.real_collisions);
-  visit("control_collisions", s.control_collisions);
-  visit("lookups", s.lookups);
-  visit("super_voxel_steps", s.super_voxel_steps);
-  visit("bound_violations", s.bound_violations);
-  visit("negative_weights", s.negative_weights);
-  visit("largest_weight", s.largest_weight);
-}
-
 template <class Visitor>
 void visit_counts(PathCounts& counts, const Visitor& visit) {
   visit("paths", counts.paths);

@@ -19,6 +19,7 @@
 #include "freepath/base/moments.h"
 #include "freepath/base/random.h"
 #include "freepath/base/threads.h"
+#include "freepath/tracking/statistics_fields.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 #include "python/src/arrays.h"
@@ -61,16 +62,7 @@ WalkSettings walk_settings(const WalkOptions& options) {
 
 nb::dict counts_to_python(const WalkStatistics& counts) {
   nb::dict result;
-  result["rays"] = counts.rays;
-  result["tentative_collisions"] = counts.tentative_collisions;
-  result["null_collisions"] = counts.null_collisions;
-  result["real_collisions"] = counts.real_collisions;
-  result["control_collisions"] = counts.control_collisions;
-  result["lookups"] = counts.lookups;
-  result["super_voxel_steps"] = counts.super_voxel_steps;
-  result["bound_violations"] = counts.bound_violations;
-  result["negative_weights"] = counts.negative_weights;
-  result["largest_weight"] = counts.largest_weight;
+  visit_statistics(counts, [&](const char* name, const auto& count) { result[name] = count; });
   return result;
 }
 

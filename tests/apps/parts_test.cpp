@@ -1,34 +1,23 @@
-// Parts of pictures: ranges of samples and tiles, merged; checkpoints and what is gone on with.
-
-#include <fmt/format.h>
+// Parts of pictures: ranges of samples, tiles and crops, merged.
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "apps/freepath/console.h"
 #include "freepath/base/random.h"
 #include "freepath/io/image.h"
-#include "tests/apps/program.h"
-#include "tests/apps/scene_files.h"
+#include "tests/apps/films.h"
 
 namespace freepath::testing {
 namespace {
 
 namespace fs = std::filesystem;
 
-class PartsTest : public ProgramTest {
+class PartsTest : public FilmsTest {
  protected:
-  PartsTest() { write_cube(path("ball.vdb")); }
-
   void write_scene() const {
     write_text(path("room.pbrt"), R"(
       Film "spectral" "integer xresolution" 24 "integer yresolution" 18 "integer nbuckets" 5
@@ -51,37 +40,7 @@ class PartsTest : public ProgramTest {
       Shape "sphere" "float radius" 0.8
     )");
   }
-
-  /// Runs a line that has to go well.
-  void expect_done(const std::string& line) const {
-    const Outcome outcome = run(line);
-    ASSERT_EQ(outcome.status, 0) << line << '\n' << outcome;
-  }
-
-  /// Checks that a line is refused, with these words.
-  void expect_refused(const std::string& line, const std::string& text) const {
-    const Outcome outcome = run(line);
-    EXPECT_EQ(outcome.status, 1) << line << '\n' << outcome;
-    EXPECT_NE(outcome.messages.find(text), std::string::npos) << line << '\n' << outcome;
-  }
-
-  void expect_same_pixels(const std::string& a, const std::string& b) const {
-    const Image first = read_image(path(a));
-    const Image second = read_image(path(b));
-    ASSERT_EQ(first.channels, second.channels);
-    ASSERT_EQ(first.values.size(), second.values.size());
-    for (std::size_t i = 0; i < first.values.size(); ++i) {
-      ASSERT_EQ(std::bit_cast<uint32_t>(first.values[i]), std::bit_cast<uint32_t>(second.values[i]))
-          << a << " and " << b << ": " << first.channels[i % first.channels.size()];
-    }
-  }
 };
-
-/// How often to try what is random: a few times, or as often as FREEPATH_TRIALS says.
-int trials(int usual) {
-  const char* const text = std::getenv("FREEPATH_TRIALS");
-  return text == nullptr ? usual : std::atoi(text);
-}
 
 /// Cuts a picture at random: tiles, and ranges of samples of each.
 class RandomParts {
@@ -245,26 +204,6 @@ TEST_F(PartsTest, AveragesOfSeedsHaveTheirWeightsAndVariances) {
   }
 }
 
-TEST_F(PartsTest, GoesOnFromAFilm) {
-  const std::string render = "render ball.vdb --size 24x18 ";
-  expect_done(render + "--spp 11 -o whole.exr");
-  expect_done(render + "--spp 3 -o some.exr --checkpoint a.film");
-  const Outcome more = run(render + "--spp 11 --threads 1 --resume a.film -o more.exr");
-  EXPECT_EQ(more.status, 0) << more;
-  EXPECT_NE(more.messages.find("goes on from 3 samples per pixel"), std::string::npos) << more;
-  expect_same_pixels("more.exr", "whole.exr");
-  expect_done(render + "--spp 3 --resume a.film -o same.exr");
-  expect_same_pixels("same.exr", "some.exr");
-  expect_refused(render + "--spp 2 --resume a.film -o b.exr",
-                 "has 3 samples of a pixel already, and 2 are asked for");
-  expect_refused(render + "--spp 9 --g 0.1 --resume a.film -o b.exr", "--g is not given");
-  expect_refused(render + "--spp 9 --crop 0,0,2,2 --resume a.film -o b.exr", "24x18 pixels");
-  expect_refused(render + "--spp 9 --layers all --resume a.film -o b.exr", "its layers are");
-  // The first run of a job that may be repeated.
-  expect_done(render + "--spp 11 --checkpoint c.film --resume c.film -o first.exr");
-  expect_same_pixels("first.exr", "whole.exr");
-}
-
 TEST_F(PartsTest, ADamagedFilmIsAnErrorWhereverItIsDamaged) {
   expect_done("render ball.vdb --size 5x4 --spp 2 --layers all -o a.film");
   std::string bytes;
@@ -288,129 +227,6 @@ TEST_F(PartsTest, ADamagedFilmIsAnErrorWhereverItIsDamaged) {
   }
   check(bytes + "x", "longer");
   EXPECT_FALSE(fs::exists(path("m.exr")));
-}
-
-// Killed at any moment, and gone on with: the same bits, and no torn file.
-TEST_F(PartsTest, KilledRendersGoOn) {
-  const std::string render = "freepath render ball.vdb --size 48x36 --spp 600 --albedo 1 ";
-  ASSERT_EQ(shell(render + "-o whole.exr").status, 0);
-  RandomStream random(23, 0, 0, 0);
-  int kills = 0;
-  const int wanted = trials(10);
-  for (int run = 0; run < 20 * wanted && kills < wanted; ++run) {
-    const Outcome outcome = shell(
-        fmt::format("timeout -s KILL {:.3f} {}-o a.exr --checkpoint a.film --resume a.film --every "
-                    "0.02",
-                    0.02 + 0.3 * random.uniform(), render));
-    if (outcome.status == 0) {
-      expect_same_pixels("a.exr", "whole.exr");
-      if (HasFatalFailure()) return;
-      fs::remove(path("a.film"));
-      fs::remove(path("a.exr"));
-      continue;
-    }
-    ++kills;
-    if (fs::exists(path("a.film"))) {
-      const Outcome merged = this->run("merge a.film --partial -o m.exr");
-      ASSERT_EQ(merged.status, 0) << merged;
-    }
-    ASSERT_FALSE(fs::exists(path("a.exr")));
-  }
-  ASSERT_EQ(kills, wanted);
-  const Outcome last = shell(render + "-o a.exr --checkpoint a.film --resume a.film");
-  EXPECT_EQ(last.status, 0) << last;
-  expect_same_pixels("a.exr", "whole.exr");
-}
-
-TEST_F(PartsTest, ACheckpointThatCannotBeWrittenIsAWarning) {
-  fs::create_directory(path("folder"));
-  bool is_ended = false;
-  const Outcome outcome = start_in_terminal(
-      words("render ball.vdb --size 32x32 --spp 1000000000 -o a.exr --checkpoint folder/a.film "
-            "--every 0.05"),
-      folder_, [&](const std::string& text, int process) {
-        if (samples_shown(text) < 2) return;
-        if (fs::exists(path("folder/a.film"))) fs::remove_all(path("folder"));
-        if (is_ended || text.find("no checkpoint: ") == std::string::npos) return;
-        is_ended = true;
-        kill(process, SIGINT);
-      });
-  EXPECT_EQ(outcome.status, program::kPartialStatus) << outcome;
-  EXPECT_NE(outcome.messages.find("rendering goes on"), std::string::npos) << outcome;
-  EXPECT_TRUE(fs::exists(path("a.partial.exr")));
-}
-
-TEST_F(PartsTest, TheNoiseAskedForIsThatOfThePicture) {
-  const std::string render = "render ball.vdb --size 24x18 --environment 1 --albedo 0.5 ";
-  const Outcome outcome = run(render + "--noise 0.02 -o a.exr --stats a.json");
-  ASSERT_EQ(outcome.status, 0) << outcome;
-  const Image image = read_image(path("a.exr"));
-  double sum = 0;
-  double variance = 0;
-  for (int row = 0; row < image.height; ++row) {
-    for (int column = 0; column < image.width; ++column) {
-      const float* const pixel = image.pixel(column, row);
-      for (const char* channel : {"R", "G", "B"}) {
-        sum += pixel[*find_channel(image, channel)];
-        variance += pixel[*find_channel(image, std::string("variance.") + channel)];
-      }
-    }
-  }
-  const double values = 3.0 * static_cast<double>(image.pixel_count());
-  EXPECT_NEAR(std::sqrt(variance / values) / (sum / values), 0.02, 0.001);
-  // It is the picture of as many samples, whatever the pilot was.
-  const float samples = image.values[*find_channel(image, "samples")];
-  expect_done(render + "--spp " + std::to_string(static_cast<int>(samples)) + " -o b.exr");
-  expect_same_pixels("a.exr", "b.exr");
-  // --spp limits it.
-  const Outcome limited = run(render + "--noise 0.001 --spp 8 -o c.exr");
-  EXPECT_EQ(limited.status, 0) << limited;
-  EXPECT_NE(limited.messages.find("the most that --spp allows"), std::string::npos) << limited;
-}
-
-TEST_F(PartsTest, FluxesHaveAnErrorToReach) {
-  const Outcome outcome = run("slab --tau 2 --albedo 0.9 --error 0.001 --json");
-  ASSERT_EQ(outcome.status, 0) << outcome;
-  const auto json = nlohmann::json::parse(outcome.output);
-  double largest = 0;
-  for (const char* flux : {"reflectance", "transmittance", "absorptance"}) {
-    largest = std::max(largest, json[std::string(flux) + "_error"].get<double>());
-  }
-  EXPECT_LE(largest, 0.001);
-  EXPECT_GT(largest, 0.00095);
-  expect_refused("slab --tau 2 --error 0.001 --paths 1e5", "--paths and --error");
-  expect_refused("slab --tau 2 --error 2", "--error: '2'");
-}
-
-TEST_F(PartsTest, ProgressIsLinesOfJsonWhereTheyAreAskedFor) {
-  const Outcome outcome = run("render ball.vdb --size 32x32 --spp 2000 -o a.exr --progress json");
-  ASSERT_EQ(outcome.status, 0) << outcome;
-  EXPECT_EQ(outcome.messages.find("{\"progress\":0."), 0U) << outcome;
-  const Outcome none = run("render ball.vdb --size 64x64 --spp 300 -o a.exr --progress none");
-  EXPECT_EQ(none.messages.find("progress"), std::string::npos) << none;
-}
-
-TEST_F(PartsTest, FramesHaveSeedsOfTheirOwnAndFailuresAreReported) {
-  fs::copy(path("ball.vdb"), path("s.1.vdb"));
-  write_text(path("s.2.vdb"), "no volume");
-  fs::copy(path("ball.vdb"), path("s.3.vdb"));
-  const std::string render = "render s.%d.vdb --size 12x9 --spp 2 --frames 1-3 ";
-  const Outcome outcome = run(render + "-o p.%d.exr");
-  EXPECT_EQ(outcome.status, 1) << outcome;
-  EXPECT_NE(outcome.messages.find("1 frame of 3 failed: --frames 2"), std::string::npos) << outcome;
-  ASSERT_TRUE(fs::exists(path("p.3.exr")));
-  EXPECT_NE(read_image(path("p.1.exr")).values, read_image(path("p.3.exr")).values);
-  expect_done("render ball.vdb --size 12x9 --spp 2 --seed 3 -o third.exr");
-  expect_same_pixels("third.exr", "p.3.exr");
-  fs::copy_file(path("ball.vdb"), path("s.2.vdb"), fs::copy_options::overwrite_existing);
-  const auto written = fs::last_write_time(path("p.1.exr"));
-  const Outcome again = run(render + "-o p.%d.exr --skip-existing");
-  EXPECT_EQ(again.status, 0) << again;
-  EXPECT_NE(again.messages.find("frame 1 (1 of 3): is there already"), std::string::npos) << again;
-  EXPECT_EQ(fs::last_write_time(path("p.1.exr")), written);
-  EXPECT_TRUE(fs::exists(path("p.2.exr")));
-  expect_done(render + "-o q.%d.exr --seed-mode same");
-  EXPECT_EQ(read_image(path("q.1.exr")).values, read_image(path("q.3.exr")).values);
 }
 
 }  // namespace

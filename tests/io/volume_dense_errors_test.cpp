@@ -112,7 +112,7 @@ TEST(DenseVolumeErrors, WrongFieldsOfMetaImageAreNamed) {
                    {"DimSize = 10 9 11", "DimSize = 10 9", {"DimSize", "2 numbers"}},
                    {"DimSize = 10", "DimSize = -1", {"DimSize", "-1"}},
                    {"DimSize = 10", "DimSize = 100", {"declares 100 x 9 x 11 voxels"}},
-                   {"DimSize", "DimSizes", {"no DimSize"}},
+                   {"DimSize", "DimSizes", {"no field 'DimSize'"}},
                    {"MET_FLOAT", "MET_STRING", {"MET_STRING"}},
                    {"LOCAL", "LIST", {"several files"}},
                    {"LOCAL", "none.raw", {"none.raw"}},
