@@ -40,7 +40,7 @@ class FilmFileTest : public ::testing::Test {
     header.counts.free_paths.lookups = 36;
     header.seconds = 1.5;
     header.notes = "notes";
-    const std::string path = (folder_ / name).string();
+    std::string path = (folder_ / name).string();
     AsideFile file(path);
     write_film(file, header, film);
     return path;
