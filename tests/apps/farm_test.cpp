@@ -6,6 +6,7 @@
 #include <string>
 
 #include "freepath/io/image.h"
+#include "freepath/paths/film_file.h"
 #include "tests/apps/program.h"
 #include "tests/apps/scene_files.h"
 
@@ -55,18 +56,23 @@ TEST_F(FarmTest, TasksOfAnArrayBecomeOnePicture) {
 
 TEST_F(FarmTest, APreemptedTaskGoesOn) {
   const std::string task =
-      "SLURM_ARRAY_TASK_COUNT=1 SLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=0 timeout -s TERM ";
-  const std::string script = " $farm/slurm_array.sh ball.vdb b.exr 3000 --size 24x18 --every 0.05";
-  // A wish to stop reaches the program itself, as Slurm sends it to all of a job's processes.
-  Outcome outcome;
-  const std::string short_run = task + "0.4" + script;
-  for (int i = 0; i < 100; ++i) {
-    outcome = recipe(short_run);
-    if (outcome.status == 0) break;
-  }
-  if (outcome.status != 0) outcome = recipe(task + "600" + script);
-  EXPECT_EQ(outcome.status, 0) << outcome;
-  const Outcome whole = recipe("freepath render ball.vdb --size 24x18 --spp 3000 -o all.exr");
+      "export SLURM_ARRAY_TASK_COUNT=1 SLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=0; ";
+  const auto script = [](uint32_t samples) {
+    return fmt::format("$farm/slurm_array.sh ball.vdb b.exr {} --size 24x18 --every 0.05", samples);
+  };
+  // More than anybody waits for. As Slurm does, all of the task's processes are told to end.
+  const Outcome preempted = recipe(
+      task + "setsid " + script(100'000'000) +
+      " & p=$!; while [ ! -e b.parts/0.checkpoint.film ]; do sleep 0.05; done; kill -TERM -- -$p; "
+      "while kill -0 -- -$p 2>/dev/null; do sleep 0.05; done");
+  EXPECT_NE(preempted.messages.find("interrupted after"), std::string::npos) << preempted;
+  EXPECT_FALSE(fs::exists(path("b.parts/0.film")));
+  const uint32_t samples = read_film_header(path("b.parts/0.checkpoint.film")).samples.most + 20;
+  const Outcome again = recipe(task + script(samples));
+  EXPECT_EQ(again.status, 0) << again;
+  EXPECT_NE(again.messages.find("goes on from"), std::string::npos) << again;
+  const Outcome whole =
+      recipe(fmt::format("freepath render ball.vdb --size 24x18 --spp {} -o all.exr", samples));
   ASSERT_EQ(whole.status, 0) << whole;
   EXPECT_EQ(read_image(path("b.exr")).values, read_image(path("all.exr")).values);
 }
