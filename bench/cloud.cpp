@@ -183,7 +183,7 @@ Medium make_cloud(int size) {
   field->voxels = std::move(builder).finish();
   Component component;
   component.density = std::move(field);
-  component.sigma_s = Spectrum(kExtinction);
+  component.sigma_s = Rgb(kExtinction);
   return Medium({component}, kSuperVoxel);
 }
 

@@ -37,7 +37,7 @@ BrickMap mirror(const BrickMap& map, int axes) {
 
 }  // namespace
 
-Medium make_haze(const Spectrum& sigma_a, const Spectrum& sigma_s) {
+Medium make_haze(const Rgb& sigma_a, const Rgb& sigma_s) {
   constexpr int kSize = 128;
   BrickMapBuilder builder(Vec3i(0), Vec3i(kSize - 1), 0);
   for (int x = 0; x < kSize; ++x) {
@@ -54,7 +54,7 @@ Medium make_haze(const Spectrum& sigma_a, const Spectrum& sigma_s) {
   return Medium({Component{.density = field, .sigma_a = sigma_a, .sigma_s = sigma_s}}, 8);
 }
 
-Medium with_spectra(const Medium& medium, const Spectrum& sigma_a, const Spectrum& sigma_s) {
+Medium with_spectra(const Medium& medium, const Rgb& sigma_a, const Rgb& sigma_s) {
   Component component = medium.components()[0];
   component.sigma_a = sigma_a;
   component.sigma_s = sigma_s;

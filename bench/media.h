@@ -7,10 +7,10 @@ namespace freepath::bench {
 
 /// A cube whose density varies smoothly between 0.55 and 1: minima of super-voxels are most of the
 /// maxima.
-Medium make_haze(const Spectrum& sigma_a, const Spectrum& sigma_s);
+Medium make_haze(const Rgb& sigma_a, const Rgb& sigma_s);
 
 /// A medium of one component with other cross sections.
-Medium with_spectra(const Medium& medium, const Spectrum& sigma_a, const Spectrum& sigma_s);
+Medium with_spectra(const Medium& medium, const Rgb& sigma_a, const Rgb& sigma_s);
 
 /// A medium of one component as two that share its field, and its extinction in the ratio 3 : 1.
 Medium in_two_parts(const Medium& medium);

@@ -55,7 +55,7 @@ struct Contestant {
                      float extinction) {
     Component component;
     component.density = field;
-    component.sigma_s = Spectrum(extinction);
+    component.sigma_s = Rgb(extinction);
     return Medium({component}, level.super_voxel);
   }
 

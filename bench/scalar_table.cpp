@@ -182,7 +182,7 @@ bool compare(const char* title, std::vector<Rivals> all, const std::vector<RaySt
 }  // namespace
 
 bool compare_with_scalar_loops(const Medium& cloud, const std::vector<RayStream>& rays) {
-  const Spectrum sigma_t = cloud.components()[0].sigma_t();
+  const Rgb sigma_t = cloud.components()[0].sigma_t();
   const Medium grey = with_spectra(cloud, sigma_t * 0.1F, sigma_t * 0.9F);
   const Medium parts = in_two_parts(grey);
   const auto scalar_grey = make_scalar_medium(grey);
@@ -205,7 +205,7 @@ bool compare_with_scalar_loops(const Medium& cloud, const std::vector<RayStream>
   }
   same &= compare("512^3 cloud, one channel, transmittance", std::move(estimators), rays);
 
-  const Spectrum chromatic = sigma_t * Spectrum(1.0F, 0.6F, 0.3F);
+  const Rgb chromatic = sigma_t * Rgb(1.0F, 0.6F, 0.3F);
   const Medium coloured = with_spectra(cloud, chromatic * 0.1F, chromatic * 0.9F);
   const auto scalar_coloured = make_scalar_medium(coloured);
   std::vector<Rivals> spectral;

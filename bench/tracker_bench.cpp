@@ -140,11 +140,11 @@ const std::vector<std::string> kTrackers = {"delta",
                                             "hero-wavelength"};
 const std::vector<std::string> kEstimators = {"ratio", "delta", "residual-ratio", "next-flight"};
 /// Extinctions of the channels, relative to the first.
-const Spectrum kChromatic(1.0F, 0.6F, 0.3F);
-const Spectrum kMildlyChromatic(1.0F, 0.85F, 0.7F);
+const Rgb kChromatic(1.0F, 0.6F, 0.3F);
+const Rgb kMildlyChromatic(1.0F, 0.85F, 0.7F);
 
-Medium coloured(const Medium& medium, const Spectrum& colour) {
-  const Spectrum sigma_t = medium.components()[0].sigma_t() * colour;
+Medium coloured(const Medium& medium, const Rgb& colour) {
+  const Rgb sigma_t = medium.components()[0].sigma_t() * colour;
   return with_spectra(medium, sigma_t * 0.1F, sigma_t * 0.9F);
 }
 
@@ -195,7 +195,7 @@ int run() {
   bool same = compare_with_scalar_loops(cloud, rays);
   compare_trackers(cloud, rays);
   compare_volumes();
-  const Medium haze = make_haze(Spectrum(0.0F), Spectrum(0.05F));
+  const Medium haze = make_haze(Rgb(0.0F), Rgb(0.05F));
   const std::vector<RayStream> haze_rays = make_rays(haze, kBatches);
   compare_lookups("dense haze, one channel, unscattered light",
                   enlist(haze, kTrackers, true, false), haze_rays);

@@ -16,8 +16,8 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
 #include "apps/freepath/progress_bar.h"
+#include "apps/freepath/render_targets.h"
 #include "apps/freepath/report_folder.h"
-#include "apps/freepath/subjects.h"
 #include "freepath/base/error.h"
 #include "freepath/study/comparison_charts.h"
 #include "freepath/study/comparison_figures.h"
@@ -185,7 +185,7 @@ void write_report(const Comparison& comparison, const ReportContext& context,
 }
 
 ComparisonSettings read_settings(const CLI::App& command, const CompareOptions& options,
-                                 const LoadedSubject& loaded) {
+                                 const LoadedTarget& loaded) {
   ComparisonSettings settings;
   settings.configurations = read_configurations(options, loaded.automatic_tracker);
   settings.time = command.count("--spp") > 0 && command.count("--time") == 0 ? 0 : options.time;
@@ -212,17 +212,17 @@ void run(const CLI::App& command, const CompareOptions& options) {
   // What is wrong with the names of methods is said before anything is loaded.
   read_configurations(options, "delta");
   ReportFolder folder(options.folder);
-  const LoadedSubject loaded = load_subject(command, options.picture);
+  const LoadedTarget loaded = load_target(command, options.picture);
   const ComparisonSettings settings = read_settings(command, options, loaded);
   const Comparison comparison = [&] {
     const StopOnInterrupt stop;
     ComparisonBar bar;
-    return compare(loaded.subject, settings, [&](const ComparisonProgress& progress) {
+    return compare(loaded.target, settings, [&](const ComparisonProgress& progress) {
       bar.show(progress);
       return !stop.requested();
     });
   }();
-  const ReportContext context{.subject = loaded.subject.name,
+  const ReportContext context{.target = loaded.target.name,
                               .command = command_line(),
                               .machine = machine_text(settings.render),
                               .date = date_text(),

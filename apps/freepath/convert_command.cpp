@@ -169,7 +169,7 @@ void run(const ConvertOptions& options) {
   if (options.effective_radius < 0) {
     fail("--effective-radius: {} is below 0", options.effective_radius);
   }
-  AsideFile file(options.output);  // before the time is spent
+  AtomicFile file(options.output);  // before the time is spent
   std::vector<LoadedField> loaded = load_chosen(options);
   if (!options.name.empty() && loaded.size() != 1) {
     fail("--name: {} fields would have it; convert one", loaded.size());

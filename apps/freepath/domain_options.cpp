@@ -37,9 +37,9 @@ Box3d parse_domain(const std::string& text, std::string_view option,
 
 }  // namespace
 
-Spectrum spectrum_of(const std::vector<double>& numbers, std::size_t first) {
+Rgb spectrum_of(const std::vector<double>& numbers, std::size_t first) {
   const auto at = [&](std::size_t i) { return static_cast<float>(numbers[first + i]); };
-  return numbers.size() < first + 3 ? Spectrum(at(0)) : Spectrum(at(0), at(1), at(2));
+  return numbers.size() < first + 3 ? Rgb(at(0)) : Rgb(at(0), at(1), at(2));
 }
 
 UpAxis parse_up(const std::string& text) { return parse_choice(text, "--up", kUpAxes); }
@@ -79,7 +79,7 @@ std::optional<Ground> parse_ground(const std::string& text, UpAxis up) {
   Ground ground;
   ground.up = up;
   const bool is_coloured = numbers.size() > 2;
-  ground.albedo = is_coloured ? spectrum_of(numbers, 0) : Spectrum(static_cast<float>(numbers[0]));
+  ground.albedo = is_coloured ? spectrum_of(numbers, 0) : Rgb(static_cast<float>(numbers[0]));
   if (numbers.size() % 2 == 0) ground.height = numbers.back();
   read_option("--ground", [&] { check(ground); });
   return ground;

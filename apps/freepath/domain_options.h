@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/scene/ground.h"
 #include "freepath/scene/periodic_sides.h"
@@ -14,7 +14,7 @@
 namespace freepath::program {
 
 /// One number or three from a place on.
-Spectrum spectrum_of(const std::vector<double>& numbers, std::size_t first);
+Rgb spectrum_of(const std::vector<double>& numbers, std::size_t first);
 
 /// Axis that points up.
 /// @param text of --up

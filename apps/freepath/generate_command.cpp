@@ -54,7 +54,7 @@ void run(GenerateOptions& options) {
     fail("{}: a volume is written as OpenVDB; give the file a name that ends in .vdb",
          options.output);
   }
-  AsideFile file(options.output);  // before the time is spent
+  AtomicFile file(options.output);  // before the time is spent
   options.volume.progress = show_progress;
   const std::vector<Field> fields = kGenerators.at(options.kind)(options.volume);
   clear_status();

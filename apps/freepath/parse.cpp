@@ -60,9 +60,9 @@ std::vector<double> parse_numbers(std::string_view text, std::string_view option
   }
 }
 
-Spectrum parse_spectrum(std::string_view text, std::string_view option) {
+Rgb parse_spectrum(std::string_view text, std::string_view option) {
   const std::vector<double> numbers = parse_numbers(text, option);
-  if (numbers.size() == 1) return Spectrum(static_cast<float>(numbers[0]));
+  if (numbers.size() == 1) return Rgb(static_cast<float>(numbers[0]));
   if (numbers.size() != 3) {
     fail("{}: '{}' has {} values; give one for all channels, or three: R,G,B", option, text,
          numbers.size());

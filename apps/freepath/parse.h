@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "freepath/base/error.h"
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/tracking/walk_modes.h"
 
 namespace freepath::program {
@@ -40,7 +40,7 @@ auto read_option(std::string_view option, Read read) {
 }
 
 /// One value for all channels, or three. @throws Error for another count or not a number
-Spectrum parse_spectrum(std::string_view text, std::string_view option);
+Rgb parse_spectrum(std::string_view text, std::string_view option);
 
 /// Whether a text begins like a number, to tell a spectrum from a name or a file.
 bool looks_numeric(std::string_view text);

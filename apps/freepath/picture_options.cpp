@@ -244,7 +244,7 @@ BuildOptions read_build_options(const CLI::App& command, const PictureOptions& o
   const bool has_environment = command.count("--environment") > 0;
   if (has_environment || command.count("--sun") > 0) {
     LightOptions lights = read_lights(options);
-    if (!has_environment) lights.environment = Spectrum(0.0F);  // no sky is made in vain
+    if (!has_environment) lights.environment = Rgb(0.0F);  // no sky is made in vain
     build.surroundings = make_surroundings(lights, read_up(options), &warnings);
     if (!has_environment) build.surroundings.environment.reset();
   }

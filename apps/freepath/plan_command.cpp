@@ -15,7 +15,7 @@
 #include "apps/freepath/parse.h"
 #include "apps/freepath/picture_options.h"
 #include "apps/freepath/progress_bar.h"
-#include "apps/freepath/subjects.h"
+#include "apps/freepath/render_targets.h"
 #include "freepath/base/error.h"
 #include "freepath/study/comparison_figures.h"
 #include "freepath/study/plan.h"
@@ -110,38 +110,38 @@ void plan_super_voxels(const PlanOptions& options, const PictureSize& size,
   const Medium& medium = *volumes.medium;
   plan.chosen_edge = medium.super_voxels().cell_size;
   plan.super_voxel_count = medium.super_voxel_count();
-  std::vector<LoadedSubject> subjects;
+  std::vector<LoadedTarget> targets;
   for (const int edge : kSuperVoxelSizes) {
     try {
       auto other = std::make_shared<const Medium>(medium.components(), edge);
-      subjects.push_back(
-          subject_of_medium(options.picture, {std::move(other), volumes.temperatures}, size));
+      targets.push_back(
+          target_of_medium(options.picture, {std::move(other), volumes.temperatures}, size));
       plan.edges.push_back(edge);
     } catch (const Error&) {
       // Too many super-voxels of that size.
     }
   }
-  if (subjects.empty()) return;
+  if (targets.empty()) return;
   std::vector<PilotCandidate> candidates;
-  for (std::size_t i = 0; i < subjects.size(); ++i) {
+  for (std::size_t i = 0; i < targets.size(); ++i) {
     PilotCandidate candidate = plan.trackers.results[*plan.trackers.best].candidate;
     candidate.name = fmt::format("{}", plan.edges[i]);
-    candidate.subject = &subjects[i].subject;
+    candidate.target = &targets[i].target;
     candidates.push_back(std::move(candidate));
   }
   plan.super_voxels.results =
-      run_pilots(subjects.front().subject, candidates, settings,
+      run_pilots(targets.front().target, candidates, settings,
                  [&](double fraction) { return line.show("super-voxels", fraction); });
   plan.super_voxels.best = cheapest(plan.super_voxels.results);
-  for (PilotResult& result : plan.super_voxels.results) result.candidate.subject = nullptr;
+  for (PilotResult& result : plan.super_voxels.results) result.candidate.target = nullptr;
 }
 
 PicturePlan make_plan(const CLI::App& command, const PlanOptions& options) {
-  const LoadedSubject whole = load_subject(command, options.picture);
+  const LoadedTarget whole = load_target(command, options.picture);
   const PictureSize size = pilot_size(whole.film);
-  const LoadedSubject loaded = whole.volumes
-                                   ? subject_of_medium(options.picture, *whole.volumes, size)
-                                   : load_subject(command, options.picture, size);
+  const LoadedTarget loaded = whole.volumes
+                                  ? target_of_medium(options.picture, *whole.volumes, size)
+                                  : load_target(command, options.picture, size);
   PilotSettings settings;
   settings.time = options.time;
   settings.seed = options.picture.seed;
@@ -149,13 +149,13 @@ PicturePlan make_plan(const CLI::App& command, const PlanOptions& options) {
   PicturePlan plan;
   plan.automatic = loaded.automatic_tracker;
   plan.reason = loaded.reason;
-  const auto pixels = [](const Subject& subject) {
-    return static_cast<double>(subject.width) * subject.height;
+  const auto pixels = [](const RenderTarget& target) {
+    return static_cast<double>(target.width) * target.height;
   };
-  plan.pixel_ratio = pixels(whole.subject) / pixels(loaded.subject);
+  plan.pixel_ratio = pixels(whole.target) / pixels(loaded.target);
   const PilotLine line;
   plan.trackers.results =
-      run_pilots(loaded.subject, tracker_candidates(options), settings,
+      run_pilots(loaded.target, tracker_candidates(options), settings,
                  [&](double fraction) { return line.show("trackers", fraction); });
   plan.trackers.best = cheapest(plan.trackers.results);
   if (whole.volumes && plan.trackers.best) {

@@ -17,8 +17,8 @@
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
-#include "freepath/io/aside_file.h"
-#include "freepath/io/image_aside.h"
+#include "freepath/io/atomic_file.h"
+#include "freepath/io/atomic_image.h"
 #include "freepath/tracking/statistics_fields.h"
 
 namespace freepath::program {
@@ -173,7 +173,7 @@ std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
   add_metadata(image, result);
   bool is_kept = false;
   std::vector<std::string> names;
-  for (AsideFile& file : pictures_) {
+  for (AtomicFile& file : pictures_) {
     const bool is_film = is_film_file(file.path());
     const bool is_written = attempts.attempt([&] {
       if (is_partial(result)) file.retarget(partial_name(file.path()));

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/freepath/film_options.h"
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 #include "freepath/paths/film_file.h"
 #include "freepath/paths/renderer.h"
 
@@ -73,7 +73,7 @@ class PictureFilesAside {
  public:
   /// @param pictures .exr with layers and metadata, .film, or .png
   /// @param statistics JSON; may be empty: none
-  /// @throws Error as AsideFile
+  /// @throws Error as AtomicFile
   PictureFilesAside(const std::vector<std::string>& pictures, const std::string& statistics);
 
   /// Writes each, whatever becomes of the others, and shows the picture then. Where the result is
@@ -86,8 +86,8 @@ class PictureFilesAside {
                                  const RenderReport& report);
 
  private:
-  std::vector<AsideFile> pictures_;
-  std::optional<AsideFile> statistics_;
+  std::vector<AtomicFile> pictures_;
+  std::optional<AtomicFile> statistics_;
 };
 
 /// Checks, before the time is spent, that statistics could be written, and over neither a picture

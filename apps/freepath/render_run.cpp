@@ -43,7 +43,7 @@ class CheckpointWriter {
 
   void write(const Film& film, const PathCounts& counts, double seconds) {
     try {
-      AsideFile aside(file_);
+      AtomicFile aside(file_);
       FilmHeader header = header_;
       header.counts = counts;
       header.seconds = seconds;

@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "freepath/base/error.h"
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 
 namespace freepath::program {
 namespace {
@@ -28,7 +28,7 @@ ReportFolder::ReportFolder(const std::string& path) : path_(path) {
   fs::create_directories(path, error);
   if (error) fail("-o {}: can't make the folder: {}", path, error.message());
   if (access(path.c_str(), W_OK | X_OK) != 0) fail("-o {}: the folder can't be written to", path);
-  const AsideFile trial(file("report.html"));
+  const AtomicFile trial(file("report.html"));
 }
 
 std::string ReportFolder::file(const std::string& name) const {

@@ -33,9 +33,9 @@ std::string values_of(const MethodOption& option) {
 
 std::string standard_of(const MethodOption& option) {
   if (!option.choices.empty()) {
-    return std::string(option.choices[static_cast<std::size_t>(option.standard)]);
+    return std::string(option.choices[static_cast<std::size_t>(option.default_value)]);
   }
-  return fmt::format("{:g}", option.standard);
+  return fmt::format("{:g}", option.default_value);
 }
 
 std::string channels_of(const MethodInfo& info) {
@@ -70,7 +70,7 @@ nlohmann::json to_json(const std::vector<MethodInfo>& infos) {
       nlohmann::json entry = {
           {"name", option.name}, {"default", standard_of(option)}, {"meaning", option.meaning}};
       if (option.choices.empty()) {
-        entry["default"] = option.standard;
+        entry["default"] = option.default_value;
         entry["minimum"] = option.minimum;
         entry["maximum"] = option.maximum;
       } else {

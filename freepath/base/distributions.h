@@ -65,13 +65,13 @@ inline AliasChoice choose(std::span<const AliasEntry> table, float u) {
   const float scaled = u * static_cast<float>(table.size());
   const uint32_t column =
       std::min(static_cast<uint32_t>(scaled), static_cast<uint32_t>(table.size() - 1));
-  const float fraction = std::min(scaled - static_cast<float>(column), kBelowOne);
+  const float fraction = std::min(scaled - static_cast<float>(column), kOneMinusEpsilon);
   const AliasEntry entry = table[column];
   if (fraction < entry.threshold) {
-    return {column, std::min(fraction / entry.threshold, kBelowOne)};
+    return {column, std::min(fraction / entry.threshold, kOneMinusEpsilon)};
   }
   return {entry.alias,
-          std::min((fraction - entry.threshold) / (1.0F - entry.threshold), kBelowOne)};
+          std::min((fraction - entry.threshold) / (1.0F - entry.threshold), kOneMinusEpsilon)};
 }
 
 }  // namespace freepath

@@ -73,9 +73,9 @@ HWY_INLINE void prefetch_row(const T* values, size_t count) {
 }
 
 /// Deals the elements of arrays out to chosen lanes: the n-th of those lanes gets the n-th element.
-class Dealer {
+class Refill {
  public:
-  explicit Dealer(uint32_t lanes) : lanes_(mask_of(lanes)), indices_(ranks(lanes)) {}
+  explicit Refill(uint32_t lanes) : lanes_(mask_of(lanes)), indices_(ranks(lanes)) {}
 
   /// `values` in the chosen lanes of a row, the others as they are. Reads kLanes values.
   HWY_INLINE void deal(const float* values, float* row) const {

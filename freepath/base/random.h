@@ -46,7 +46,7 @@ constexpr float uniform_from_bits(uint32_t bits) {
 }
 
 /// The largest float below 1, at which what rounding would lift to 1 is held.
-inline constexpr float kBelowOne = 1.0F - 0x1p-24F;
+inline constexpr float kOneMinusEpsilon = 1.0F - 0x1p-24F;
 
 /// Bits of the 31 of a number that have to count for it to have all its digits.
 /// Where they don't (one number in 256), a second word gives the digits that follow.
@@ -67,7 +67,7 @@ constexpr float uniform_from_words(uint32_t bits, uint32_t second) {
   const uint32_t half = bits >> 1;
   const float fraction = half < kFewDigits ? digits_after(second) : 0.5F;
   return std::min((static_cast<float>(static_cast<int32_t>(half)) + fraction) * 0x1p-31F,
-                  kBelowOne);
+                  kOneMinusEpsilon);
 }
 
 /// 2 artanh(s)/s - 2, over s²: an interpolant through the Chebyshev nodes of [0, 0.0295], good to

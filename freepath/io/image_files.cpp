@@ -9,10 +9,10 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/input_file.h"
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
+#include "freepath/io/atomic_image.h"
 #include "freepath/io/exr_header.h"
 #include "freepath/io/image.h"
-#include "freepath/io/image_aside.h"
 #include "freepath/io/image_codec.h"
 #include "freepath/io/image_encode.h"
 #include "freepath/io/image_plain.h"
@@ -71,11 +71,11 @@ void check_writable(const std::string& path) {
 }
 
 void write_exr(const std::string& path, const Image& image, const ExrFormat& format) {
-  AsideFile file(path);
+  AtomicFile file(path);
   write_exr(file, image, format);
 }
 
-void write_exr(AsideFile& file, const Image& image, const ExrFormat& format) {
+void write_exr(AtomicFile& file, const Image& image, const ExrFormat& format) {
   const std::string& path = file.path();
   check_consistent(path, image);
   if (image_format(path) != ImageFormat::kExr) fail("{}: an EXR file must end in .exr", path);
@@ -95,11 +95,11 @@ std::vector<uint8_t> encode_png(const Image& image, const PictureLook& look,
 }
 
 void write_png(const std::string& path, const Image& image, const PictureLook& look) {
-  AsideFile file(path);
+  AtomicFile file(path);
   write_png(file, image, look);
 }
 
-void write_png(AsideFile& file, const Image& image, const PictureLook& look) {
+void write_png(AtomicFile& file, const Image& image, const PictureLook& look) {
   const std::string& path = file.path();
   if (image_format(path) != ImageFormat::kPng) fail("{}: a PNG file must end in .png", path);
   // The PNG writer doesn't notice a full disk, hence the detour.
@@ -112,7 +112,7 @@ bool is_exr(const std::string& path) {
   return !is_plain_image(path) && image_format(path) == ImageFormat::kExr;
 }
 
-void write_image(AsideFile& file, const Image& image, const PictureLook& look,
+void write_image(AtomicFile& file, const Image& image, const PictureLook& look,
                  const ExrFormat& format) {
   if (is_plain_image(file.path())) return write_plain_image(file, image, look);
   if (is_exr(file.path())) return write_exr(file, image, format);

@@ -14,7 +14,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/vector.h"
-#include "freepath/io/image_aside.h"
+#include "freepath/io/atomic_image.h"
 
 namespace freepath {
 namespace {
@@ -114,11 +114,11 @@ bool is_plain_image(const std::string& path) {
 }
 
 void write_plain_image(const std::string& path, const Image& image, const PictureLook& look) {
-  AsideFile file(path);
+  AtomicFile file(path);
   write_plain_image(file, image, look);
 }
 
-void write_plain_image(AsideFile& file, const Image& image, const PictureLook& look) {
+void write_plain_image(AtomicFile& file, const Image& image, const PictureLook& look) {
   const std::string& path = file.path();
   const std::vector<uint8_t> bytes =
       extension_of(path) == ".pfm"

@@ -107,11 +107,11 @@ openvdb::FloatGrid::Ptr openvdb_grid_of(const Field& field) {
 
 void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
                const VdbWriteOptions& options) {
-  AsideFile file(path.string());
+  AtomicFile file(path.string());
   write_vdb(file, fields, options);
 }
 
-void write_vdb(AsideFile& file, std::span<const Field* const> fields,
+void write_vdb(AtomicFile& file, std::span<const Field* const> fields,
                const VdbWriteOptions& options) {
   if (fields.empty()) fail("{}: there is no field to write", file.path());
   openvdb::initialize();
@@ -138,7 +138,7 @@ VolumeFormat volume_format(const std::string& path) {
        extension);
 }
 
-void write_volume(AsideFile& file, std::span<const Field* const> fields,
+void write_volume(AtomicFile& file, std::span<const Field* const> fields,
                   const VdbWriteOptions& options) {
   switch (volume_format(file.path())) {
     case VolumeFormat::kVdb:

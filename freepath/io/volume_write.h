@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 #include "freepath/media/field.h"
 
 namespace freepath {
@@ -32,24 +32,24 @@ VolumeFormat volume_format(const std::string& path);
 void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
                const VdbWriteOptions& options = {});
 /// The same to a file that is open already.
-void write_vdb(AsideFile& file, std::span<const Field* const> fields,
+void write_vdb(AtomicFile& file, std::span<const Field* const> fields,
                const VdbWriteOptions& options = {});
 
 /// Writes fields as fog volumes of one NanoVDB file, packed by zip. The same fields give the same
 /// bytes.
 /// @throws Error as write_vdb
-void write_nvdb(AsideFile& file, std::span<const Field* const> fields,
+void write_nvdb(AtomicFile& file, std::span<const Field* const> fields,
                 const VdbWriteOptions& options = {});
 
 /// Writes fields as point data of one VTK image (.vti), floats behind the markup: a value for every
 /// voxel of the box that holds all active ones.
 /// @throws Error as write_vdb, and if the fields stand in different grids or the edges of their
 /// voxels are not perpendicular, which the format can't tell
-void write_vti(AsideFile& file, std::span<const Field* const> fields);
+void write_vti(AtomicFile& file, std::span<const Field* const> fields);
 
 /// Writes fields in the format of the file's extension.
 /// @throws Error as the function of that format, and if a VTK image is to hold halves
-void write_volume(AsideFile& file, std::span<const Field* const> fields,
+void write_volume(AtomicFile& file, std::span<const Field* const> fields,
                   const VdbWriteOptions& options = {});
 
 }  // namespace freepath

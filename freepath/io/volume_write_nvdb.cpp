@@ -24,7 +24,7 @@ nanovdb::GridHandle<> nanovdb_grid_of(const Field& field, bool half) {
 
 }  // namespace
 
-void write_nvdb(AsideFile& file, std::span<const Field* const> fields,
+void write_nvdb(AtomicFile& file, std::span<const Field* const> fields,
                 const VdbWriteOptions& options) {
   if (fields.empty()) fail("{}: there is no field to write", file.path());
   openvdb::initialize();

@@ -25,7 +25,7 @@ struct VtiPlacement {
 };
 
 /// @param first the voxel that becomes the first
-VtiPlacement vti_placement(const AsideFile& file, const Field& field, const Vec3i& first) {
+VtiPlacement vti_placement(const AtomicFile& file, const Field& field, const Vec3i& first) {
   const Matrix4d& matrix = field.index_to_world;
   VtiPlacement placement;
   placement.origin = Vec3d(first) * matrix;
@@ -80,7 +80,7 @@ VoxelBox common_box(std::span<const Field* const> fields) {
   return box;
 }
 
-std::string vti_head(const AsideFile& file, std::span<const Field* const> fields,
+std::string vti_head(const AtomicFile& file, std::span<const Field* const> fields,
                      const VoxelBox& box, uint64_t array_bytes) {
   const VtiPlacement placement = vti_placement(file, *fields[0], box.low);
   const Vec3i last = box.counts() - Vec3i(1);
@@ -126,7 +126,7 @@ void write_array(std::ofstream& stream, const Field& field, const VoxelBox& box,
 
 /// Checks that all voxels of a box fit onto the disk: those of a sparse grid may be a million times
 /// as many as it has.
-void check_room(const AsideFile& file, const Vec3i& counts, std::size_t fields) {
+void check_room(const AtomicFile& file, const Vec3i& counts, std::size_t fields) {
   const double bytes = static_cast<double>(counts.x) * static_cast<double>(counts.y) *
                        static_cast<double>(counts.z) * static_cast<double>(fields) * sizeof(float);
   const std::filesystem::path folder = std::filesystem::absolute(file.path()).parent_path();
@@ -144,7 +144,7 @@ void check_room(const AsideFile& file, const Vec3i& counts, std::size_t fields) 
 
 }  // namespace
 
-void write_vti(AsideFile& file, std::span<const Field* const> fields) {
+void write_vti(AtomicFile& file, std::span<const Field* const> fields) {
   if (fields.empty()) fail("{}: there is no field to write", file.path());
   for (const Field* field : fields) {
     if (field->index_to_world != fields[0]->index_to_world) {

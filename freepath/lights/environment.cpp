@@ -10,7 +10,7 @@ namespace freepath {
 
 namespace {
 
-bool is_legal(const Spectrum& s) { return is_finite(s) && s.x >= 0 && s.y >= 0 && s.z >= 0; }
+bool is_legal(const Rgb& s) { return is_finite(s) && s.x >= 0 && s.y >= 0 && s.z >= 0; }
 
 }  // namespace
 
@@ -22,7 +22,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::str
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {
       const float* values = image.pixel(column, row);
-      const Spectrum s(values[colour[0]], values[colour[1]], values[colour[2]]);
+      const Rgb s(values[colour[0]], values[colour[1]], values[colour[2]]);
       if (!is_legal(s)) {
         fail("{}: pixel ({}, {}) is {},{},{}; light must be finite and not negative", name, column,
              row, s.x, s.y, s.z);
@@ -42,7 +42,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, UpAxis up, const std::str
     const double solid_angle = 2 * std::numbers::pi * (heights[row] - heights[row + 1]) / width_;
     solid_angles.push_back(solid_angle);
     for (int column = 0; column < width_; ++column) {
-      const Spectrum mean = mean_over_texel(column, row);
+      const Rgb mean = mean_over_texel(column, row);
       for (int i = 0; i < kChannels; ++i) fluence[i] += mean[i] * solid_angle;
       importance[texel(column, row)] = luminance(mean);
     }
@@ -61,17 +61,17 @@ void ImageEnvironment::set_draws(PixelDraws draws) {
   }
 }
 
-Spectrum ImageEnvironment::mean_over_texel(int column, int row) const {
+Rgb ImageEnvironment::mean_over_texel(int column, int row) const {
   // The integral of the two hat functions that meet in a pixel: 3/4 of its own, 1/8 of each
   // neighbour's.
   constexpr std::array<float, 3> kWeights{0.125F, 0.75F, 0.125F};
-  Spectrum mean(0.0F);
+  Rgb mean(0.0F);
   for (int dy = -1; dy <= 1; ++dy) {
     const int y = std::clamp(row + dy, 0, height_ - 1);
     for (int dx = -1; dx <= 1; ++dx) {
       const int x = (column + dx + width_) % width_;
       const Texel& one = texels_[texel(x, y)];
-      mean += Spectrum(one[0], one[1], one[2]) * (kWeights[dx + 1] * kWeights[dy + 1]);
+      mean += Rgb(one[0], one[1], one[2]) * (kWeights[dx + 1] * kWeights[dy + 1]);
     }
   }
   return mean;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "freepath/base/distributions.h"
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/base/turn.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
@@ -24,7 +24,7 @@ namespace freepath {
 
 /// What an escaping ray sees, and how likely light sampling would have chosen its direction.
 struct LightValue {
-  Spectrum radiance{0.0F};
+  Rgb radiance{0.0F};
   float pdf = 0;  ///< [1/sr]
 };
 
@@ -98,7 +98,7 @@ class ImageEnvironment {
   }
 
   /// Integral of the radiance over all directions.
-  Spectrum fluence() const { return fluence_; }
+  Rgb fluence() const { return fluence_; }
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -115,7 +115,7 @@ class ImageEnvironment {
 
   /// Bilinear interpolant at a point whose unit is the pixel, (0, 0) the centre of the first; it
   /// wraps around horizontally and is continued by the last row at the poles.
-  [[gnu::always_inline]] Spectrum interpolate(float x, float y) const {
+  [[gnu::always_inline]] Rgb interpolate(float x, float y) const {
     // Not below -1, so that truncating x + 1 rounds x down.
     int column0 = static_cast<int>(x + 1.0F) - 1;
     const int above = static_cast<int>(y + 1.0F) - 1;
@@ -140,7 +140,7 @@ class ImageEnvironment {
   }
 
   /// Mean of the interpolant over a pixel.
-  Spectrum mean_over_texel(int column, int row) const;
+  Rgb mean_over_texel(int column, int row) const;
 
   int width_, height_;
   UpAxis up_;
@@ -150,7 +150,7 @@ class ImageEnvironment {
   std::vector<Texel> texels_;
   std::vector<float> row_heights_;  // cosine of the zenith angle at the rows' upper edges
   PixelDraws draws_;
-  Spectrum fluence_{0.0F};
+  Rgb fluence_{0.0F};
 };
 
 }  // namespace freepath

@@ -159,8 +159,8 @@ void InfiniteLights::finish() {
   }
 }
 
-Channels InfiniteLights::radiance_of(const Light& light, const LightValue& value,
-                                     const SpectrumValues& values) {
+SampledSpectrum InfiniteLights::radiance_of(const Light& light, const LightValue& value,
+                                            const SpectrumValues& values) {
   if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
     return values[constant->radiance] * light.scale;
   }
@@ -216,9 +216,9 @@ LightDirection InfiniteLights::sample_plain(const Light& light, float u0, float 
   return {sun.sample(u0, u1), {sun.radiance(), sun.pdf()}};
 }
 
-LightDraw InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values, float u0,
-                                 float u1, float u2) const {
-  LightDraw draw;
+LightSample InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values, float u0,
+                                   float u1, float u2) const {
+  LightSample draw;
   const Light* chosen = nullptr;
   for (const Light& light : lights_) {
     if (light.share == 0) continue;

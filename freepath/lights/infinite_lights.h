@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/lights/environment.h"
 #include "freepath/lights/light_descriptions.h"
-#include "freepath/lights/light_draw.h"
 #include "freepath/lights/light_frame.h"
+#include "freepath/lights/light_sample.h"
 #include "freepath/lights/octahedral_environment.h"
 #include "freepath/lights/portal.h"
 #include "freepath/lights/sun.h"
@@ -45,8 +45,8 @@ class InfiniteLights {
   /// to which lights that are not drawn add nothing.
   LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
   /// A draw of all lights together, of density 0 if there is nothing to draw.
-  LightDraw sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
-                   float u2) const;
+  LightSample sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
+                     float u2) const;
 
  private:
   /// What shines the same from everywhere.
@@ -66,8 +66,8 @@ class InfiniteLights {
   };
 
   /// Radiance of a light in the channels.
-  static Channels radiance_of(const Light& light, const LightValue& value,
-                              const SpectrumValues& values);
+  static SampledSpectrum radiance_of(const Light& light, const LightValue& value,
+                                     const SpectrumValues& values);
   /// Radiance and density that a light has as if it had neither frame nor portal; of constant light
   /// the density alone.
   static LightValue plain_value(const Light& light, const Vec3f& towards);

@@ -32,7 +32,7 @@ class OctahedralEnvironment {
     const float y = p.v * static_cast<float>(size_);
     const int column = std::clamp(static_cast<int>(x), 0, size_ - 1);
     const int row = std::clamp(static_cast<int>(y), 0, size_ - 1);
-    return {Spectrum(radiance_[texel(column, row)]), draws_.pdf(texel(column, row))};
+    return {Rgb(radiance_[texel(column, row)]), draws_.pdf(texel(column, row))};
   }
 
   /// A direction drawn with its density.
@@ -43,7 +43,7 @@ class OctahedralEnvironment {
     return {
         direction_from_octahedral({(static_cast<float>(column.index) + column.remainder) * scale,
                                    (static_cast<float>(row.index) + row.remainder) * scale}),
-        {Spectrum(radiance_[pixel]), draws_.pdf(pixel)}};
+        {Rgb(radiance_[pixel]), draws_.pdf(pixel)}};
   }
 
   /// Luminance of the integral of the radiance over all directions.

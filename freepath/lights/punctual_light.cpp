@@ -154,7 +154,7 @@ PunctualLight::PunctualLight(const ProjectionLight& light, const Vec3d& origin,
   if (bounds_.cosine_reach < 0) bounds_.normals.cosine = -1;
 }
 
-Channels PunctualLight::intensity(const Vec3f& away, const SpectrumValues& values) const {
+SampledSpectrum PunctualLight::intensity(const Vec3f& away, const SpectrumValues& values) const {
   if (kind_ == Kind::kPoint) return values[intensity_] * scale_;
   const Vec3f local = frame_.to_light(away);
   if (kind_ == Kind::kSpot) {
@@ -178,8 +178,8 @@ Channels PunctualLight::intensity(const Vec3f& away, const SpectrumValues& value
   return values.illuminant(colours_[row * width_ + pixel_at(0.5F + 0.5F * x, width_)]) * scale_;
 }
 
-LightDraw PunctualLight::sample(const Vec3f& from, const SpectrumValues& values) const {
-  LightDraw draw;
+LightSample PunctualLight::sample(const Vec3f& from, const SpectrumValues& values) const {
+  LightSample draw;
   draw.delta = true;
   const Vec3f towards = position_ - from;
   const float distance2 = towards.length2();

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "freepath/base/channels.h"
 #include "freepath/base/octahedral.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/lights/light_bounds.h"
 #include "freepath/lights/light_descriptions.h"
-#include "freepath/lights/light_draw.h"
 #include "freepath/lights/light_frame.h"
+#include "freepath/lights/light_sample.h"
 #include "freepath/spectra/spectrum_table.h"
 
 namespace freepath {
@@ -25,9 +25,9 @@ class PunctualLight {
   PunctualLight(const ProjectionLight& light, const Vec3d& origin, const SpectrumTable& table);
 
   /// Intensity towards a direction; not normalised [world].
-  Channels intensity(const Vec3f& away, const SpectrumValues& values) const;
+  SampledSpectrum intensity(const Vec3f& away, const SpectrumValues& values) const;
   /// The only direction from which it is seen; the probability is left 1.
-  LightDraw sample(const Vec3f& from, const SpectrumValues& values) const;
+  LightSample sample(const Vec3f& from, const SpectrumValues& values) const;
   /// Its power is 0 if it is black.
   const LightBounds& bounds() const { return bounds_; }
 

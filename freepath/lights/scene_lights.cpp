@@ -59,7 +59,7 @@ SceneLights::SceneLights(SceneLightsDescription description, const SpectrumTable
   for (const PunctualLight& light : punctual_) within.push_back(light.bounds());
   const std::vector<LightBounds> areas = add_area_lights(description, table);
   within.insert(within.end(), areas.begin(), areas.end());
-  chooser_ = LightChooser(within);
+  chooser_ = LightSampler(within);
   set_shares();
 }
 
@@ -155,8 +155,8 @@ std::vector<LightBounds> SceneLights::add_area_lights(const SceneLightsDescripti
   return all;
 }
 
-Channels SceneLights::radiance(const Part& part, const Vec3f& normal, float u, float v,
-                               const Vec3f& towards, const SpectrumValues& values) const {
+SampledSpectrum SceneLights::radiance(const Part& part, const Vec3f& normal, float u, float v,
+                                      const Vec3f& towards, const SpectrumValues& values) const {
   const Area& area = areas_[part.area];
   const Emission& emission = emissions_[area.emission];
   const float cosine = normal.dot(towards);
@@ -166,8 +166,8 @@ Channels SceneLights::radiance(const Part& part, const Vec3f& normal, float u, f
          part.scale;
 }
 
-Channels SceneLights::emitted(uint32_t light, const SurfacePoint& point, const Vec3f& towards,
-                              const SpectrumValues& values) const {
+SampledSpectrum SceneLights::emitted(uint32_t light, const SurfacePoint& point,
+                                     const Vec3f& towards, const SpectrumValues& values) const {
   const Part& part = parts_[areas_[light].first_part + point.primitive];
   return radiance(part, point.normal, point.u, point.v, towards, values);
 }
@@ -184,13 +184,13 @@ LightSeen SceneLights::hit(const Vec3f& from, uint32_t light, const SurfacePoint
   return seen;
 }
 
-LightDraw SceneLights::sample_distant(const SpectrumValues& values, float u) const {
+LightSample SceneLights::sample_distant(const SpectrumValues& values, float u) const {
   std::size_t chosen = 0;
   while (chosen + 1 < distant_.size() && u >= distant_[chosen].share) {
     u -= distant_[chosen++].share;
   }
   const Distant& light = distant_[chosen];
-  LightDraw draw;
+  LightSample draw;
   draw.direction = light.towards;
   draw.distance = light.distance;
   draw.radiance = values[light.radiance] * light.scale;
@@ -199,12 +199,12 @@ LightDraw SceneLights::sample_distant(const SpectrumValues& values, float u) con
   return draw;
 }
 
-LightDraw SceneLights::sample_within(const Vec3f& position, const SpectrumValues& values, float u0,
-                                     float u1, float u2) const {
+LightSample SceneLights::sample_within(const Vec3f& position, const SpectrumValues& values,
+                                       float u0, float u1, float u2) const {
   const LightChoice choice = chooser_.choose(position, u2);
   if (choice.probability == 0) return {};
   if (choice.light < punctual_.size()) {
-    LightDraw draw = punctual_[choice.light].sample(position, values);
+    LightSample draw = punctual_[choice.light].sample(position, values);
     draw.pdf *= choice.probability;
     return draw;
   }
@@ -212,7 +212,7 @@ LightDraw SceneLights::sample_within(const Vec3f& position, const SpectrumValues
   const Part& part = parts_[index];
   const Area& area = areas_[part.area];
   const EmitterPoint point = area.geometry->sample(index - area.first_part, position, u0, u1);
-  LightDraw draw;
+  LightSample draw;
   const Vec3f towards = point.position - position;
   const float distance = towards.length();
   if (!(point.pdf > 0 && distance > 0)) return draw;
@@ -225,21 +225,21 @@ LightDraw SceneLights::sample_within(const Vec3f& position, const SpectrumValues
   return draw;
 }
 
-LightDraw SceneLights::sample(const Vec3f& position, const SpectrumValues& values, float u0,
-                              float u1, float u2) const {
-  LightDraw draw;
+LightSample SceneLights::sample(const Vec3f& position, const SpectrumValues& values, float u0,
+                                float u1, float u2) const {
+  LightSample draw;
   float share = 0;
   float above = u2 - infinite_share_;
   if (above < 0) {
     share = infinite_share_;
-    draw = infinite_.sample(position, values, u0, u1, std::min(u2 / share, kBelowOne));
+    draw = infinite_.sample(position, values, u0, u1, std::min(u2 / share, kOneMinusEpsilon));
   } else if (above < distant_share_ || (distant_share_ > 0 && within_share_ == 0)) {
     share = distant_share_;
-    draw = sample_distant(values, std::min(above / share, kBelowOne));
+    draw = sample_distant(values, std::min(above / share, kOneMinusEpsilon));
   } else if (within_share_ > 0) {
     share = within_share_;
     above -= distant_share_;
-    draw = sample_within(position, values, u0, u1, std::min(above / share, kBelowOne));
+    draw = sample_within(position, values, u0, u1, std::min(above / share, kOneMinusEpsilon));
   }
   draw.pdf *= share;
   return draw;

@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/geometry/surface_point.h"
 #include "freepath/lights/infinite_lights.h"
-#include "freepath/lights/light_chooser.h"
 #include "freepath/lights/light_descriptions.h"
-#include "freepath/lights/light_draw.h"
+#include "freepath/lights/light_sample.h"
+#include "freepath/lights/light_sampler.h"
 #include "freepath/lights/punctual_light.h"
 #include "freepath/spectra/spectrum_table.h"
 
@@ -25,7 +25,7 @@ namespace freepath {
 /// A draw chooses evenly among the kinds of light to draw: all from outside of the scene but
 /// parallel light, parallel light, and lights within. How much of each arrives depends on what
 /// shadows it, so that no share by power would be safe. Among parallel lights it chooses by
-/// illuminance, among those within as LightChooser does.
+/// illuminance, among those within as LightSampler does.
 class SceneLights {
  public:
   /// @param table holds the spectra of the descriptions
@@ -34,8 +34,8 @@ class SceneLights {
 
   /// A direction from which light arrives at a position, were nothing in between. u2 chooses the
   /// light, u0 and u1 the direction; all in [0, 1).
-  LightDraw sample(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
-                   float u2) const;
+  LightSample sample(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
+                     float u2) const;
 
   /// What a ray sees that leaves the scene.
   LightSeen escape(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const {
@@ -50,8 +50,8 @@ class SceneLights {
                 const SpectrumValues& values) const;
 
   /// The radiance alone, for rays whose hits are not weighted.
-  Channels emitted(uint32_t light, const SurfacePoint& point, const Vec3f& towards,
-                   const SpectrumValues& values) const;
+  SampledSpectrum emitted(uint32_t light, const SurfacePoint& point, const Vec3f& towards,
+                          const SpectrumValues& values) const;
 
   /// Luminance of the integral over all directions of the light from outside of the scene, were
   /// nothing in between.
@@ -66,7 +66,7 @@ class SceneLights {
     SpectrumId radiance;
     float scale;     ///< Of that spectrum.
     float share;     ///< Probability of drawing it among lights of this kind.
-    float distance;  ///< LightDraw::distance.
+    float distance;  ///< LightSample::distance.
   };
   /// The one light that all draws are of, wherever they are made: their direction and radiance are
   /// always the same, their density 1. Null if there are others to draw, or none.
@@ -99,11 +99,11 @@ class SceneLights {
   void set_shares();
   static Emission make_emission(const AreaEmission& description);
 
-  Channels radiance(const Part& part, const Vec3f& normal, float u, float v, const Vec3f& towards,
-                    const SpectrumValues& values) const;
-  LightDraw sample_distant(const SpectrumValues& values, float u) const;
-  LightDraw sample_within(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
-                          float u2) const;
+  SampledSpectrum radiance(const Part& part, const Vec3f& normal, float u, float v,
+                           const Vec3f& towards, const SpectrumValues& values) const;
+  LightSample sample_distant(const SpectrumValues& values, float u) const;
+  LightSample sample_within(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
+                            float u2) const;
 
   InfiniteLights infinite_;
   std::vector<Distant> distant_;
@@ -111,7 +111,7 @@ class SceneLights {
   std::vector<Emission> emissions_;
   std::vector<Area> areas_;
   std::vector<Part> parts_;
-  LightChooser chooser_;  // of punctual lights, then parts
+  LightSampler chooser_;  // of punctual lights, then parts
   double distant_illuminance_ = 0;
   float infinite_share_ = 0, distant_share_ = 0, within_share_ = 0;
 };

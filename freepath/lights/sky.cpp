@@ -34,9 +34,8 @@ ImageEnvironment make_sky(const SunParameters& sun, UpAxis up) {
   check(sun);
   const double sun_height = std::sin(sun.elevation * kRadians);
   const Atmosphere atmosphere(sun_height, sun.turbidity, kGroundAlbedo);
-  const Spectrum direct =
-      sun.irradiance.value_or(direct_sun_irradiance(sun.elevation, sun.turbidity));
-  const Spectrum outside = sun_outside();
+  const Rgb direct = sun.irradiance.value_or(direct_sun_irradiance(sun.elevation, sun.turbidity));
+  const Rgb outside = sun_outside();
   const Vec3d ground_irradiance =
       Vec3d(direct / outside) * sun_height + atmosphere.sky_irradiance();
 

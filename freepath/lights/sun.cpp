@@ -10,12 +10,12 @@ namespace freepath {
 namespace {
 
 /// Of direct sunlight to the ground.
-Spectrum transmittance(double elevation, double turbidity) {
+Rgb transmittance(double elevation, double turbidity) {
   constexpr double kRadians = std::numbers::pi / 180;
   const double height = std::clamp(elevation, 0.0, 90.0);
   const double mass = 1 / (std::sin(height * kRadians) + 0.15 * std::pow(height + 3.885, -1.253));
   const AirColumn column = air_column(turbidity);
-  Spectrum result;
+  Rgb result;
   for (int channel = 0; channel < kChannels; ++channel) {
     const double depth = (column.rayleigh[channel] + column.aerosol[channel]) * mass;
     result[channel] = static_cast<float>(std::exp(-depth));
@@ -25,12 +25,12 @@ Spectrum transmittance(double elevation, double turbidity) {
 
 }  // namespace
 
-Spectrum sun_outside() {
-  const Spectrum balance = Spectrum(1) / transmittance(45, 3);
+Rgb sun_outside() {
+  const Rgb balance = Rgb(1) / transmittance(45, 3);
   return balance * static_cast<float>(128 * kRadiancePerKilocandela / luminance(balance));
 }
 
-Spectrum direct_sun_irradiance(double elevation, double turbidity) {
+Rgb direct_sun_irradiance(double elevation, double turbidity) {
   return sun_outside() * transmittance(elevation, turbidity);
 }
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/base/tangent_frame.h"
 #include "freepath/base/turn.h"
 #include "freepath/base/up_axis.h"
@@ -21,7 +21,7 @@ inline constexpr double kRadiancePerKilocandela = std::numbers::pi / 60;
 
 /// Irradiance of the sun outside the atmosphere, 128 klx. Its colour is balanced for daylight, as
 /// cameras are: the light of a sun 45 degrees high is white on the ground, at a turbidity of 3.
-Spectrum sun_outside();
+Rgb sun_outside();
 
 /// Where the sun stands and what lies between.
 struct SunParameters {
@@ -29,7 +29,7 @@ struct SunParameters {
   double azimuth = 0;     ///< As on a compass, see sky_direction [degrees].
   double turbidity = 2;   ///< Haze: 2 is very clear, 3 clear, 6 hazy, 10 almost fog.
   /// On a surface that faces the sun; by default what direct_sun_irradiance gives.
-  std::optional<Spectrum> irradiance = {};
+  std::optional<Rgb> irradiance = {};
 };
 
 /// Irradiance of direct sunlight on a surface that faces the sun, in the units above.
@@ -39,7 +39,7 @@ struct SunParameters {
 /// and mixed gases are left out. Below the horizon the value of the horizon is used: almost
 /// nothing.
 /// @param elevation [degrees]
-Spectrum direct_sun_irradiance(double elevation, double turbidity);
+Rgb direct_sun_irradiance(double elevation, double turbidity);
 
 /// A disc with an angular radius of 0.2665 degrees.
 class Sun {
@@ -52,8 +52,8 @@ class Sun {
   /// Direction towards the centre [world].
   const Vec3f& direction() const { return direction_; }
   /// Radiance of the disc: irradiance / solid angle.
-  const Spectrum& radiance() const { return radiance_; }
-  const Spectrum& irradiance() const { return irradiance_; }
+  const Rgb& radiance() const { return radiance_; }
+  const Rgb& irradiance() const { return irradiance_; }
   /// Density of `sample` in the disc [1/sr].
   float pdf() const { return 1.0F / solid_angle(); }
   /// Of the disc, 2π (1 - cosine of the radius) [sr].
@@ -85,8 +85,8 @@ class Sun {
 
   Vec3f direction_;
   TangentFrame frame_;  // around it
-  Spectrum irradiance_;
-  Spectrum radiance_;
+  Rgb irradiance_;
+  Rgb radiance_;
 };
 
 }  // namespace freepath

@@ -45,7 +45,7 @@ Vec3d thermal_xyz(double temperature) {
 }
 
 std::array<RadianceField, kMaxChannels> tabulate_radiance(
-    const TemperatureEmission& emission, const std::function<Channels(double)>& radiance) {
+    const TemperatureEmission& emission, const std::function<SampledSpectrum(double)>& radiance) {
   std::array<RadianceField, kMaxChannels> fields;
   const ValueSpan range = span_of(*emission.field);
   const auto temperature = [&](double value) { return (value - emission.offset) * emission.scale; };
@@ -59,7 +59,7 @@ std::array<RadianceField, kMaxChannels> tabulate_radiance(
   std::array<std::vector<float>, kMaxChannels> tables;
   for (std::size_t i = 0; i < nodes; ++i) {
     const double value = range.low + static_cast<double>(step) * static_cast<double>(i);
-    const Channels emitted = radiance(temperature(value));
+    const SampledSpectrum emitted = radiance(temperature(value));
     for (int c = 0; c < kMaxChannels; ++c) tables[c].push_back(emitted[c]);
   }
   for (int c = 0; c < kMaxChannels; ++c) {

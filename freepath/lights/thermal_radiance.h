@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/media/field.h"
 #include "freepath/media/radiance_field.h"
@@ -37,6 +37,6 @@ Vec3d thermal_xyz(double temperature);
 /// hot enough to glow.
 /// @param radiance in the channels, of a temperature [K]
 std::array<RadianceField, kMaxChannels> tabulate_radiance(
-    const TemperatureEmission& emission, const std::function<Channels(double)>& radiance);
+    const TemperatureEmission& emission, const std::function<SampledSpectrum(double)>& radiance);
 
 }  // namespace freepath

@@ -20,7 +20,7 @@ LayeredLobe<Bottom> layered(const Coating& coating, float eta, const Bottom& bot
       context.textures.evaluate(coating.thickness, point),
       reflectance_at(coating.albedo, point, context),
       std::clamp(context.textures.evaluate(coating.g, point), -kLargestG, kLargestG)};
-  return {DielectricInterface(eta, facets_at(coating.roughness, point, context)),
+  return {DielectricInterface(eta, microfacets_at(coating.roughness, point, context)),
           bottom,
           medium,
           {coating.max_depth, coating.samples}};
@@ -66,13 +66,13 @@ MaterialValue CoatedDiffuseMaterial::evaluate(const Vec3f& out, const Vec3f& in,
 
 /// All reflections between a smooth coating and a diffuse bottom: what the coating reflects of
 /// diffuse light from within is the fit of [Jensen01, Sec. 2.1].
-Channels CoatedDiffuseMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
-                                       const SurfaceContext& context) const {
+SampledSpectrum CoatedDiffuseMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
+                                              const SurfaceContext& context) const {
   const float eta = std::max(1.0F, dielectric_index(coating.eta, context).hero);
   const float within =
       std::max(0.0F, -1.440F / (eta * eta) + 0.710F / eta + 0.668F + 0.0636F * eta);
   const float first = fresnel_dielectric(std::abs(out.z), eta);
-  Channels result = reflectance_at(reflectance, point, context);
+  SampledSpectrum result = reflectance_at(reflectance, point, context);
   for (int i = 0; i < kMaxChannels; ++i) {
     result[i] = first + (1.0F - first) * (1.0F - within) * result[i] / (1.0F - within * result[i]);
   }
@@ -104,14 +104,15 @@ MaterialValue CoatedConductorMaterial::evaluate(const Vec3f& out, const Vec3f& i
 }
 
 /// All reflections between a smooth coating and a smooth conductor.
-Channels CoatedConductorMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
-                                         const SurfaceContext& context) const {
+SampledSpectrum CoatedConductorMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
+                                                const SurfaceContext& context) const {
   const float eta = dielectric_index(coating.eta, context).hero;
   const float cosine = std::abs(out.z);
   const float first = fresnel_dielectric(cosine, eta);
   const float below = std::sqrt(std::max(0.0F, 1.0F - (1.0F - cosine * cosine) / (eta * eta)));
-  const Channels metal = conductor_at(index, roughness, eta, point, context).reflectance(below);
-  Channels result;
+  const SampledSpectrum metal =
+      conductor_at(index, roughness, eta, point, context).reflectance(below);
+  SampledSpectrum result;
   for (int i = 0; i < kMaxChannels; ++i) {
     result[i] = first + (1.0F - first) * (1.0F - first) * metal[i] /
                             std::max(1e-6F, 1.0F - first * metal[i]);

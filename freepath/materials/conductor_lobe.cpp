@@ -7,8 +7,8 @@
 
 namespace freepath {
 
-Channels ConductorLobe::reflectance(float cosine) const {
-  Channels result;
+SampledSpectrum ConductorLobe::reflectance(float cosine) const {
+  SampledSpectrum result;
   for (int i = 0; i < kMaxChannels; ++i) {
     result[i] = fresnel_conductor(cosine, std::max(0.0F, eta_[i]), std::max(0.0F, k_[i]));
   }

@@ -13,7 +13,7 @@ namespace freepath {
 class ConductorLobe {
  public:
   /// @param eta,k refractive index relative to what is outside
-  ConductorLobe(const TrowbridgeReitz& facets, const Channels& eta, const Channels& k)
+  ConductorLobe(const TrowbridgeReitz& facets, const SampledSpectrum& eta, const SampledSpectrum& k)
       : facets_(facets), eta_(eta), k_(k) {}
 
   bool is_specular() const { return facets_.is_smooth(); }
@@ -23,11 +23,11 @@ class ConductorLobe {
   MaterialValue evaluate(const Vec3f& out, const Vec3f& in) const;
 
   /// What a facet reflects at a cosine to its normal.
-  Channels reflectance(float cosine) const;
+  SampledSpectrum reflectance(float cosine) const;
 
  private:
   TrowbridgeReitz facets_;
-  Channels eta_, k_;
+  SampledSpectrum eta_, k_;
 };
 
 }  // namespace freepath

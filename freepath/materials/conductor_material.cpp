@@ -17,8 +17,8 @@ MaterialValue ConductorMaterial::evaluate(const Vec3f& out, const Vec3f& in,
   return conductor_at(index, roughness, 1, point, context).evaluate(out, in);
 }
 
-Channels ConductorMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
-                                   const SurfaceContext& context) const {
+SampledSpectrum ConductorMaterial::albedo(const Vec3f& out, const SurfacePoint& point,
+                                          const SurfaceContext& context) const {
   return conductor_at(index, roughness, 1, point, context).reflectance(std::abs(out.z));
 }
 

@@ -10,7 +10,7 @@ namespace freepath {
 /// Reflects the same radiance to all directions on the side where the light comes from.
 class DiffuseLobe {
  public:
-  explicit DiffuseLobe(const Channels& reflectance) : reflectance_(reflectance) {}
+  explicit DiffuseLobe(const SampledSpectrum& reflectance) : reflectance_(reflectance) {}
 
   static constexpr bool is_specular() { return false; }
 
@@ -28,10 +28,10 @@ class DiffuseLobe {
     return {reflectance_ * pdf, pdf};
   }
 
-  const Channels& albedo() const { return reflectance_; }
+  const SampledSpectrum& albedo() const { return reflectance_; }
 
  private:
-  Channels reflectance_;
+  SampledSpectrum reflectance_;
 };
 
 }  // namespace freepath

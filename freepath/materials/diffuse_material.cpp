@@ -16,8 +16,8 @@ MaterialValue DiffuseMaterial::evaluate(const Vec3f& out, const Vec3f& in, Rando
   return DiffuseLobe(reflectance_at(reflectance, point, context)).evaluate(out, in);
 }
 
-Channels DiffuseMaterial::albedo(const Vec3f& /*out*/, const SurfacePoint& point,
-                                 const SurfaceContext& context) const {
+SampledSpectrum DiffuseMaterial::albedo(const Vec3f& /*out*/, const SurfacePoint& point,
+                                        const SurfaceContext& context) const {
   return reflectance_at(reflectance, point, context);
 }
 

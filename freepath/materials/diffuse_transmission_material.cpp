@@ -8,19 +8,19 @@ namespace {
 
 /// What a surface scatters to its sides, and how often a path is sent to each.
 struct Sides {
-  Channels reflectance, transmittance;
+  SampledSpectrum reflectance, transmittance;
   float reflected = 0;  ///< Probability.
   bool is_black = false;
 };
 
-Channels scaled(const SpectrumInput& input, float scale, const SurfacePoint& point,
-                const SurfaceContext& context) {
-  Channels result = context.textures.evaluate(input, point, context.spectra) * scale;
+SampledSpectrum scaled(const SpectrumInput& input, float scale, const SurfacePoint& point,
+                       const SurfaceContext& context) {
+  SampledSpectrum result = context.textures.evaluate(input, point, context.spectra) * scale;
   for (int i = 0; i < kMaxChannels; ++i) result[i] = std::clamp(result[i], 0.0F, 1.0F);
   return result;
 }
 
-float largest_of(const Channels& channels, const SurfaceContext& context) {
+float largest_of(const SampledSpectrum& channels, const SurfaceContext& context) {
   float largest = 0;
   for (int i = 0; i < context.spectra.channels(); ++i) largest = std::max(largest, channels[i]);
   return largest;
@@ -65,8 +65,8 @@ MaterialValue DiffuseTransmissionMaterial::evaluate(const Vec3f& out, const Vec3
   return {sides.transmittance * pdf, pdf * (1 - sides.reflected)};
 }
 
-Channels DiffuseTransmissionMaterial::albedo(const Vec3f& /*out*/, const SurfacePoint& point,
-                                             const SurfaceContext& context) const {
+SampledSpectrum DiffuseTransmissionMaterial::albedo(const Vec3f& /*out*/, const SurfacePoint& point,
+                                                    const SurfaceContext& context) const {
   const Sides sides = sides_of(*this, point, context);
   return sides.reflectance + sides.transmittance;
 }

@@ -15,38 +15,38 @@ bool Roughness::is_smooth() const {
       .is_smooth();
 }
 
-TrowbridgeReitz facets_at(const Roughness& roughness, const SurfacePoint& point,
-                          const SurfaceContext& context) {
+TrowbridgeReitz microfacets_at(const Roughness& roughness, const SurfacePoint& point,
+                               const SurfaceContext& context) {
   const float u = context.textures.evaluate(roughness.u, point);
   const float v = context.textures.evaluate(roughness.v, point);
   if (!roughness.remap) return {u, v};
   return {TrowbridgeReitz::alpha_of_roughness(u), TrowbridgeReitz::alpha_of_roughness(v)};
 }
 
-Channels reflectance_at(const SpectrumInput& reflectance, const SurfacePoint& point,
-                        const SurfaceContext& context) {
-  Channels result = context.textures.evaluate(reflectance, point, context.spectra);
+SampledSpectrum reflectance_at(const SpectrumInput& reflectance, const SurfacePoint& point,
+                               const SurfaceContext& context) {
+  SampledSpectrum result = context.textures.evaluate(reflectance, point, context.spectra);
   for (int i = 0; i < kMaxChannels; ++i) result[i] = std::clamp(result[i], 0.0F, 1.0F);
   return result;
 }
 
 ConductorLobe conductor_at(const ConductorIndex& index, const Roughness& roughness, float outside,
                            const SurfacePoint& point, const SurfaceContext& context) {
-  const TrowbridgeReitz facets = facets_at(roughness, point, context);
+  const TrowbridgeReitz facets = microfacets_at(roughness, point, context);
   const float scale = 1.0F / outside;
   if (const auto* const complex = std::get_if<ComplexIndex>(&index)) {
     return {facets, context.textures.evaluate(complex->eta, point, context.spectra) * scale,
             context.textures.evaluate(complex->k, point, context.spectra) * scale};
   }
   const auto& given = *std::get_if<NormalReflectance>(&index);
-  Channels k = reflectance_at(given.reflectance, point, context);
+  SampledSpectrum k = reflectance_at(given.reflectance, point, context);
   constexpr float kLargest = 0.9999F;  // as in pbrt-v4: k would be infinite for 1
   for (int i = 0; i < kMaxChannels; ++i) {
     // F = k² / (4 + k²) at normal incidence for eta = 1.
     const float r = std::min(k[i], kLargest);
     k[i] = 2.0F * std::sqrt(r / (1.0F - r));
   }
-  return {facets, Channels(scale), k * scale};
+  return {facets, SampledSpectrum(scale), k * scale};
 }
 
 DielectricIndex dielectric_index(SpectrumId eta, const SurfaceContext& context) {
@@ -61,8 +61,8 @@ DielectricIndex dielectric_index(SpectrumId eta, const SurfaceContext& context) 
   return index;
 }
 
-Channels hero_alone(float value, const SurfaceContext& context) {
-  Channels result;
+SampledSpectrum hero_alone(float value, const SurfaceContext& context) {
+  SampledSpectrum result;
   result[context.hero] = value * context.hero_factor();
   return result;
 }

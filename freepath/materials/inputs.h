@@ -1,19 +1,19 @@
 #pragma once
 /// @file From the parameters of a material to what they are at a point.
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/materials/conductor_lobe.h"
 #include "freepath/materials/material_kinds.h"
 #include "freepath/materials/trowbridge_reitz.h"
 
 namespace freepath {
 
-TrowbridgeReitz facets_at(const Roughness& roughness, const SurfacePoint& point,
-                          const SurfaceContext& context);
+TrowbridgeReitz microfacets_at(const Roughness& roughness, const SurfacePoint& point,
+                               const SurfaceContext& context);
 
 /// In [0, 1], as pbrt-v4 clips it.
-Channels reflectance_at(const SpectrumInput& reflectance, const SurfacePoint& point,
-                        const SurfaceContext& context);
+SampledSpectrum reflectance_at(const SpectrumInput& reflectance, const SurfacePoint& point,
+                               const SurfaceContext& context);
 
 /// @param outside refractive index of what lies on the conductor
 ConductorLobe conductor_at(const ConductorIndex& index, const Roughness& roughness, float outside,
@@ -21,7 +21,7 @@ ConductorLobe conductor_at(const ConductorIndex& index, const Roughness& roughne
 
 /// A refractive index in the channels of a path.
 struct DielectricIndex {
-  Channels eta;
+  SampledSpectrum eta;
   float hero = 1;      ///< That of the hero's channel.
   bool parts = false;  ///< Whether channels that are in use differ.
 };
@@ -29,6 +29,6 @@ struct DielectricIndex {
 DielectricIndex dielectric_index(SpectrumId eta, const SurfaceContext& context);
 
 /// A value in the hero's channel alone, which stands for all of them.
-Channels hero_alone(float value, const SurfaceContext& context);
+SampledSpectrum hero_alone(float value, const SurfaceContext& context);
 
 }  // namespace freepath

@@ -19,7 +19,7 @@ float power_weight(float own, float other) {
 }
 
 /// Ends walks that carry little; false if this one ends.
-bool survives_roulette(Channels& weight, int depth, RandomStream& random) {
+bool survives_roulette(SampledSpectrum& weight, int depth, RandomStream& random) {
   constexpr int kFirst = 4;
   constexpr float kLittle = 0.25F;
   const float largest = largest_magnitude(weight);
@@ -34,7 +34,7 @@ bool survives_roulette(Channels& weight, int depth, RandomStream& random) {
 /// A walk within the layers.
 template <class Bottom>
 struct LayeredLobe<Bottom>::State {
-  Channels weight;
+  SampledSpectrum weight;
   Vec3f direction;  // of travel
   float z;          // height above the bottom
 };
@@ -79,12 +79,12 @@ std::optional<LobeSample> LayeredLobe<Bottom>::sample(const Vec3f& out,
   // Whether evaluate() has this walk: between two specular interfaces it connects from the medium
   // straight through the top only.
   bool connected = !top_.is_specular();
-  const auto left = [&](const Vec3f& in, const Channels& weight) {
+  const auto left = [&](const Vec3f& in, const SampledSpectrum& weight) {
     return LobeSample{with_side(in, side), weight, connected ? approximate_pdf(above, in) : 0.0F,
                       !connected};
   };
-  if (!entered->transmitted) return left(entered->direction, Channels(entered->weight));
-  State state{Channels(entered->weight), entered->direction, medium_.thickness};
+  if (!entered->transmitted) return left(entered->direction, SampledSpectrum(entered->weight));
+  State state{SampledSpectrum(entered->weight), entered->direction, medium_.thickness};
   for (int depth = 0; depth < walk_.max_depth; ++depth) {
     if (state.direction.z == 0 || !survives_roulette(state.weight, depth, random)) break;
     if (scatters()) {
@@ -123,9 +123,9 @@ MaterialValue LayeredLobe<Bottom>::evaluate(const Vec3f& out, const Vec3f& in,
   const float side = out.z < 0 ? -1.0F : 1.0F;
   const Vec3f above = with_side(out, side);
   const Vec3f other = with_side(in, side);
-  Channels sum;
+  SampledSpectrum sum;
   for (int i = 0; i < walk_.samples; ++i) sum += connected_walk(above, other, random);
-  return {Channels(top_.evaluate(above, other).value) +
+  return {SampledSpectrum(top_.evaluate(above, other).value) +
               sum * (1.0F / static_cast<float>(walk_.samples)),
           approximate_pdf(above, other)};
 }
@@ -134,8 +134,8 @@ MaterialValue LayeredLobe<Bottom>::evaluate(const Vec3f& out, const Vec3f& in,
 /// event a connection through the top along the direction drawn in advance competes with the walk's
 /// own next direction, where neither is specular [Guo18, Sec. 4].
 template <class Bottom>
-Channels LayeredLobe<Bottom>::connected_walk(const Vec3f& out, const Vec3f& in,
-                                             RandomStream& random) const {
+SampledSpectrum LayeredLobe<Bottom>::connected_walk(const Vec3f& out, const Vec3f& in,
+                                                    RandomStream& random) const {
   const std::optional<InterfaceSample> entered =
       top_.sample(out, random, InterfaceEvents::kTransmission, TransportMode::kRadiance);
   if (!entered) return {};
@@ -144,8 +144,8 @@ Channels LayeredLobe<Bottom>::connected_walk(const Vec3f& out, const Vec3f& in,
   if (!left) return {};
   const Exit exit{in, left->direction, left->weight * in.z / std::abs(left->direction.z),
                   left->pdf};
-  State state{Channels(entered->weight), entered->direction, medium_.thickness};
-  Channels sum;
+  State state{SampledSpectrum(entered->weight), entered->direction, medium_.thickness};
+  SampledSpectrum sum;
   for (int depth = 0; depth < walk_.max_depth; ++depth) {
     if (state.direction.z == 0 || !survives_roulette(state.weight, depth, random)) break;
     if (scatters()) {
@@ -172,13 +172,14 @@ Channels LayeredLobe<Bottom>::connected_walk(const Vec3f& out, const Vec3f& in,
 
 /// Connects from a point of the medium and draws the next direction.
 template <class Bottom>
-Channels LayeredLobe<Bottom>::scatter_in_medium(State& state, const Exit& exit,
-                                                RandomStream& random) const {
+SampledSpectrum LayeredLobe<Bottom>::scatter_in_medium(State& state, const Exit& exit,
+                                                       RandomStream& random) const {
   const float up = medium_.thickness - state.z;
   const float phase = phase_.evaluate(state.direction, -exit.direction);
   const float weight = top_.is_specular() ? 1.0F : power_weight(exit.pdf, phase);
   state.weight *= medium_.albedo;
-  Channels sum = state.weight * (phase * exit.factor * weight * transmittance(up, exit.direction));
+  SampledSpectrum sum =
+      state.weight * (phase * exit.factor * weight * transmittance(up, exit.direction));
   const float u0 = random.uniform();
   const PhaseSample next = phase_.sample(state.direction, u0, random.uniform());
   state.direction = next.direction;
@@ -197,9 +198,9 @@ Channels LayeredLobe<Bottom>::scatter_in_medium(State& state, const Exit& exit,
 
 /// Connects from the bottom and draws the next direction.
 template <class Bottom>
-Channels LayeredLobe<Bottom>::scatter_at_bottom(State& state, const Exit& exit,
-                                                RandomStream& random) const {
-  Channels sum;
+SampledSpectrum LayeredLobe<Bottom>::scatter_at_bottom(State& state, const Exit& exit,
+                                                       RandomStream& random) const {
+  SampledSpectrum sum;
   const Vec3f out = -state.direction;
   if (!bottom_.is_specular()) {
     const MaterialValue found = bottom_.evaluate(out, -exit.direction);
@@ -209,7 +210,7 @@ Channels LayeredLobe<Bottom>::scatter_at_bottom(State& state, const Exit& exit,
   }
   const std::optional<LobeSample> next = bottom_.sample(out, random);
   if (!next) {
-    state.weight = Channels();
+    state.weight = SampledSpectrum();
     return sum;
   }
   state.weight *= next->weight;

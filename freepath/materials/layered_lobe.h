@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/materials/conductor_lobe.h"
 #include "freepath/materials/dielectric_interface.h"
 #include "freepath/materials/diffuse_lobe.h"
@@ -15,7 +15,7 @@ namespace freepath {
 /// What lies between the interfaces, with an extinction of 1.
 struct LayerMedium {
   float thickness;
-  Channels albedo;  ///< Where black, the medium only absorbs.
+  SampledSpectrum albedo;  ///< Where black, the medium only absorbs.
   float g;
 };
 
@@ -47,9 +47,9 @@ class LayeredLobe {
 
   bool scatters() const { return !is_black(medium_.albedo); }
   float transmittance(float distance, const Vec3f& direction) const;
-  Channels connected_walk(const Vec3f& out, const Vec3f& in, RandomStream& random) const;
-  Channels scatter_in_medium(State& state, const Exit& exit, RandomStream& random) const;
-  Channels scatter_at_bottom(State& state, const Exit& exit, RandomStream& random) const;
+  SampledSpectrum connected_walk(const Vec3f& out, const Vec3f& in, RandomStream& random) const;
+  SampledSpectrum scatter_in_medium(State& state, const Exit& exit, RandomStream& random) const;
+  SampledSpectrum scatter_at_bottom(State& state, const Exit& exit, RandomStream& random) const;
   bool reaches_interface(State& state, float exponential) const;
   float approximate_pdf(const Vec3f& out, const Vec3f& in) const;
   float bottom_pdf(const Vec3f& out, const Vec3f& in) const;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "freepath/base/channels.h"
 #include "freepath/base/random.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/turn.h"
 #include "freepath/base/vector.h"
 
@@ -16,7 +16,7 @@ namespace freepath {
 /// A direction drawn by a lobe.
 struct LobeSample {
   Vec3f direction;
-  Channels weight;         ///< f |cosine| / density
+  SampledSpectrum weight;  ///< f |cosine| / density
   float pdf = 0;           ///< [1/sr]; 0 of a specular event.
   bool specular = false;   ///< The direction had no choice.
   bool hero_only = false;  ///< Only the hero channel is left.
@@ -24,8 +24,8 @@ struct LobeSample {
 
 /// The value of lobes for two directions.
 struct MaterialValue {
-  Channels value;  ///< f |cosine| of the direction that follows [1/sr]
-  float pdf = 0;   ///< Of sampling that direction [1/sr].
+  SampledSpectrum value;  ///< f |cosine| of the direction that follows [1/sr]
+  float pdf = 0;          ///< Of sampling that direction [1/sr].
 };
 
 inline bool same_hemisphere(const Vec3f& a, const Vec3f& b) { return a.z * b.z > 0; }

@@ -90,7 +90,7 @@ std::optional<MaterialSample> Material::sample(const SurfacePoint& point, const 
   const Vec3f out = frame.to_local(-travel);
   if (!frame.on_side(out, -travel)) return std::nullopt;
   const Material* const chosen = resolved(point, travel, context);
-  if (chosen == nullptr) return MaterialSample{travel, Channels(1), 0, true, true, false};
+  if (chosen == nullptr) return MaterialSample{travel, SampledSpectrum(1), 0, true, true, false};
   const std::optional<LobeSample> drawn = std::visit(
       [&]<class T>(const T& kind) -> std::optional<LobeSample> {
         if constexpr (kIsMix<T>) {
@@ -138,14 +138,14 @@ class AlbedoFinder {
   AlbedoFinder(const SurfacePoint& point, const Vec3f& travel, const SurfaceContext& context)
       : point_(point), travel_(travel), context_(context) {}
 
-  Channels find(const Material* material) {
-    if (material == nullptr) return Channels(1);  // what passes is not lost
+  SampledSpectrum find(const Material* material) {
+    if (material == nullptr) return SampledSpectrum(1);  // what passes is not lost
     const auto* const mix = std::get_if<MixMaterial>(&material->kind());
     if (mix == nullptr) {
       ++visited_;
       const Vec3f out = SurfaceFrame(point_, travel_).to_local(-travel_);
       return std::visit(
-          [&]<class T>(const T& kind) -> Channels {
+          [&]<class T>(const T& kind) -> SampledSpectrum {
             if constexpr (kIsMix<T>) {
               return {};
             } else {
@@ -158,7 +158,7 @@ class AlbedoFinder {
     if (known != mixes_.end()) return known->second;
     ++visited_;
     const float amount = std::clamp(context_.textures.evaluate(mix->amount, point_), 0.0F, 1.0F);
-    const Channels mean =
+    const SampledSpectrum mean =
         find(mix->first.get()) * (1.0F - amount) + find(mix->second.get()) * amount;
     mixes_.emplace(material, mean);
     return mean;
@@ -169,16 +169,16 @@ class AlbedoFinder {
   const SurfacePoint& point_;
   const Vec3f& travel_;
   const SurfaceContext& context_;
-  std::unordered_map<const Material*, Channels> mixes_;
+  std::unordered_map<const Material*, SampledSpectrum> mixes_;
   uint64_t visited_ = 0;
 };
 
 }  // namespace
 
-Channels Material::albedo(const SurfacePoint& point, const Vec3f& travel,
-                          const SurfaceContext& context, uint64_t* visited) const {
+SampledSpectrum Material::albedo(const SurfacePoint& point, const Vec3f& travel,
+                                 const SurfaceContext& context, uint64_t* visited) const {
   AlbedoFinder finder(point, travel, context);
-  const Channels albedo = finder.find(this);
+  const SampledSpectrum albedo = finder.find(this);
   if (visited != nullptr) *visited += finder.visited();
   return albedo;
 }

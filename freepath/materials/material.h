@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
-#include "freepath/base/channels.h"
 #include "freepath/base/random.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/geometry/surface_point.h"
 #include "freepath/materials/material_kinds.h"
@@ -21,7 +21,7 @@ struct MaterialSample {
   Vec3f direction;  ///< Of travel, unit [world].
   /// f |cosine| / density. With hero_only it is 0 in all channels but the hero's, where
   /// SurfaceContext::hero_factor is in it.
-  Channels weight;
+  SampledSpectrum weight;
   float pdf = 0;             ///< [1/sr]; 0 of a specular event.
   bool specular = false;     ///< The direction had no choice, so that no evaluate() covers it.
   bool transmitted = false;  ///< To the other side of the surface.
@@ -80,8 +80,8 @@ class Material {
   ///
   /// Parts of a mix that are parts of others, too, are looked at once, however deep mixes nest.
   /// @param visited if given, how many materials were looked at is added to it
-  Channels albedo(const SurfacePoint& point, const Vec3f& travel, const SurfaceContext& context,
-                  uint64_t* visited = nullptr) const;
+  SampledSpectrum albedo(const SurfacePoint& point, const Vec3f& travel,
+                         const SurfaceContext& context, uint64_t* visited = nullptr) const;
 
   const Kind& kind() const { return kind_; }
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <variant>
 
-#include "freepath/base/channels.h"
 #include "freepath/base/random.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/geometry/surface_point.h"
 #include "freepath/materials/lobe_sample.h"
@@ -41,7 +41,8 @@ struct DiffuseMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   static bool is_specular() { return false; }
   static bool transmits() { return false; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// `diffusetransmission`: the same radiance to all directions on either side, as paper and leaves
@@ -56,7 +57,8 @@ struct DiffuseTransmissionMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   static bool is_specular() { return false; }
   static bool transmits() { return true; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// The refractive index eta + i k of a metal.
@@ -80,7 +82,8 @@ struct ConductorMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   bool is_specular() const { return roughness.is_smooth(); }
   static bool transmits() { return false; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// `dielectric`: a smooth or rough interface between media. Where its index differs between the
@@ -95,7 +98,8 @@ struct DielectricMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   bool is_specular() const { return roughness.is_smooth(); }
   static bool transmits() { return true; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// `thindielectric`: a pane whose two interfaces are one surface. Nothing is displaced, so that
@@ -109,7 +113,8 @@ struct ThinDielectricMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   static bool is_specular() { return true; }
   static bool transmits() { return true; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// A dielectric layer on top of something, with a medium in it.
@@ -134,7 +139,8 @@ struct CoatedDiffuseMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   static bool is_specular() { return false; }
   static bool transmits() { return false; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// `coatedconductor`, the same on both sides.
@@ -149,7 +155,8 @@ struct CoatedConductorMaterial {
                          const SurfacePoint& point, const SurfaceContext& context) const;
   bool is_specular() const;
   static bool transmits() { return false; }
-  Channels albedo(const Vec3f& out, const SurfacePoint& point, const SurfaceContext& context) const;
+  SampledSpectrum albedo(const Vec3f& out, const SurfacePoint& point,
+                         const SurfaceContext& context) const;
 };
 
 /// `mix`: at each hit one of two materials, the second with the probability `amount`. Null is an

@@ -21,7 +21,7 @@ std::optional<LobeSample> ThinDielectricMaterial::sample(const Vec3f& out, Rando
                                                          const SurfaceContext& context) const {
   if (out.z == 0) return std::nullopt;
   const DielectricIndex index = dielectric_index(eta, context);
-  Channels reflectance;
+  SampledSpectrum reflectance;
   float probability = 0;
   for (int i = 0; i < kMaxChannels; ++i) {
     reflectance[i] = pane_reflectance(std::abs(out.z), index.eta[i]);
@@ -31,7 +31,8 @@ std::optional<LobeSample> ThinDielectricMaterial::sample(const Vec3f& out, Rando
   if (random.uniform() < probability) {
     return LobeSample{{-out.x, -out.y, out.z}, reflectance * (1.0F / probability), 0, true};
   }
-  return LobeSample{-out, (Channels(1) - reflectance) * (1.0F / (1.0F - probability)), 0, true};
+  return LobeSample{-out, (SampledSpectrum(1) - reflectance) * (1.0F / (1.0F - probability)), 0,
+                    true};
 }
 
 MaterialValue ThinDielectricMaterial::evaluate(const Vec3f& /*out*/, const Vec3f& /*in*/,
@@ -41,9 +42,9 @@ MaterialValue ThinDielectricMaterial::evaluate(const Vec3f& /*out*/, const Vec3f
   return {};
 }
 
-Channels ThinDielectricMaterial::albedo(const Vec3f& /*out*/, const SurfacePoint& /*point*/,
-                                        const SurfaceContext& /*context*/) const {
-  return Channels(1);
+SampledSpectrum ThinDielectricMaterial::albedo(const Vec3f& /*out*/, const SurfacePoint& /*point*/,
+                                               const SurfaceContext& /*context*/) const {
+  return SampledSpectrum(1);
 }
 
 }  // namespace freepath

@@ -12,7 +12,7 @@
 namespace freepath {
 namespace {
 
-void check_spectrum(const Spectrum& spectrum, const char* name, std::size_t component) {
+void check_spectrum(const Rgb& spectrum, const char* name, std::size_t component) {
   for (int channel = 0; channel < kChannels; ++channel) {
     const float value = spectrum[channel];
     if (!std::isfinite(value) || value < 0) {

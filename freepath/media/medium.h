@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "freepath/base/channels.h"
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/media/field.h"
 #include "freepath/media/page_allocator.h"
@@ -29,15 +29,15 @@ enum class Interpolation {
 /// One density field times the spectra of its cross sections.
 struct Component {
   std::shared_ptr<const Field> density;
-  Spectrum sigma_a{0.0F};    ///< Absorption per unit of density [1/m].
-  Spectrum sigma_s{1.0F};    ///< Scattering per unit of density [1/m].
+  Rgb sigma_a{0.0F};         ///< Absorption per unit of density [1/m].
+  Rgb sigma_s{1.0F};         ///< Scattering per unit of density [1/m].
   PhaseFunction phase = {};  ///< Isotropic unless it is set.
-  Spectrum emission{0.0F};  ///< L_e, emitted radiance; the source term is sigma_a · density · L_e.
+  Rgb emission{0.0F};  ///< L_e, emitted radiance; the source term is sigma_a · density · L_e.
   /// What multiplies L_e, from place to place, in R, G and B: a black body's radiance of a field of
   /// temperatures. All three have fields, of one layout, or none has.
   std::array<RadianceField, kChannels> radiance = {};
 
-  Spectrum sigma_t() const { return sigma_a + sigma_s; }
+  Rgb sigma_t() const { return sigma_a + sigma_s; }
 };
 
 /// An affine map of rows, point · linear + offset, in single precision.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 
 namespace freepath {
 namespace {

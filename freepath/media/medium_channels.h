@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/media/medium.h"
 #include "freepath/media/radiance_field.h"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/media/medium.h"
 #include "freepath/media/medium_channels.h"
 

@@ -78,20 +78,20 @@ class SuperVoxelSegments {
     hn::Store(cursor.head, kFloat, state.head);
   }
 
-  /// Puts rows of entered rays, from `first` on, into the dealer's lanes.
+  /// Puts rows of entered rays, from `first` on, into the refill's lanes.
   template <class Rows>
-  HWY_INLINE void refill(const Rows& rays, std::size_t first, const Dealer& dealer,
+  HWY_INLINE void refill(const Rows& rays, std::size_t first, const Refill& refill,
                          State& state) const {
     for (int axis = 0; axis < 3; ++axis) {
-      dealer.deal(rays.origin[axis] + first, state.origin[axis]);
-      dealer.deal(rays.direction[axis] + first, state.direction[axis]);
-      dealer.deal(rays.inverse[axis] + first, state.inverse[axis]);
-      dealer.deal(rays.cell[axis] + first, state.cell[axis]);
+      refill.deal(rays.origin[axis] + first, state.origin[axis]);
+      refill.deal(rays.direction[axis] + first, state.direction[axis]);
+      refill.deal(rays.inverse[axis] + first, state.inverse[axis]);
+      refill.deal(rays.cell[axis] + first, state.cell[axis]);
     }
-    dealer.deal(rays.length + first, state.end);
-    dealer.fill(0.0F, state.t);
-    dealer.deal(rays.record + first, state.record);
-    dealer.deal(rays.head + first, state.head);
+    refill.deal(rays.length + first, state.end);
+    refill.fill(0.0F, state.t);
+    refill.deal(rays.record + first, state.record);
+    refill.deal(rays.head + first, state.head);
   }
 
   /// The segment at the cursor. Lanes outside the mask get entry 0 and no meaning.

@@ -11,7 +11,7 @@ void Deadline::begin_pass(double now, bool first) {
   first_pass_ = first;
 }
 
-void Deadline::wish_to_stop(double now) { wish_ = std::min(wish_.load(), now); }
+void Deadline::request_stop(double now) { wish_ = std::min(wish_.load(), now); }
 
 bool Deadline::is_over(double now, double done) const {
   const double wish = wish_;

@@ -19,7 +19,7 @@ class Deadline {
   /// A pass begins. Not while another thread asks.
   void begin_pass(double now, bool first);
   /// The caller wishes to stop: a first pass has a second left, others none.
-  void wish_to_stop(double now);
+  void request_stop(double now);
   bool stop_is_wished() const { return wish_ < kNever; }
 
   /// Whether the pass at work has to end; any thread may ask.

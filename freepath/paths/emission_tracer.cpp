@@ -14,7 +14,7 @@ constexpr uint32_t kStreams = 0xA0000000U;
 }  // namespace
 
 void EmissionTracer::add(uint32_t owner, const ScenePath& path, const Vec3f& position,
-                         const Vec3f& direction, const Channels& weight) {
+                         const Vec3f& direction, const SampledSpectrum& weight) {
   float length = std::numeric_limits<float>::infinity();
   // No surface cuts the medium where it is clear.
   const bool clear = scene_.is_clear_at(path.medium, position);

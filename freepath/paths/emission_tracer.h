@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/path_state.h"
@@ -25,7 +25,7 @@ class EmissionTracer {
   /// @param owner the path's slot
   /// @param weight what the path's radiance gets of what is emitted
   void add(uint32_t owner, const ScenePath& path, const Vec3f& position, const Vec3f& direction,
-           const Channels& weight);
+           const SampledSpectrum& weight);
 
   /// Walks all flights, adds to their paths, and forgets them.
   void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics);
@@ -33,7 +33,7 @@ class EmissionTracer {
  private:
   struct Line {
     uint32_t owner;
-    Channels weight;
+    SampledSpectrum weight;
   };
 
   const PathScene& scene_;

@@ -336,7 +336,7 @@ void describe(FilmHeader& header, const Film& film) {
   header.samples = film.sample_counts();
 }
 
-void write_film(AsideFile& file, FilmHeader header, const Film& film) {
+void write_film(AtomicFile& file, FilmHeader header, const Film& film) {
   std::ofstream stream(file.name(), std::ios::binary);
   put_film(stream, std::move(header), film);
   stream.close();

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 #include "freepath/paths/path_job.h"
 #include "freepath/paths/picture_identity.h"
 #include "freepath/sensors/film.h"
@@ -51,7 +51,7 @@ bool is_film_file(const std::string& path);
 /// Writes a film: a line that names the format, the header as JSON, the sums packed by Blosc, and a
 /// checksum. The file appears under its name once it is whole.
 /// @throws Error that names the file
-void write_film(AsideFile& file, FilmHeader header, const Film& film);
+void write_film(AtomicFile& file, FilmHeader header, const Film& film);
 
 /// What write_film() writes, in memory.
 std::string film_bytes(FilmHeader header, const Film& film);

@@ -113,7 +113,7 @@ FluxResult trace_flux(const PathScene& scene, FluxMeter meter, const FluxSetting
   const MediumChannels channels = medium.bind(scene.spectra->in_rgb()).channels;
   WalkSettings walk = settings.walk;
   walk.absorption = settle_absorption(channels, settings, meter);
-  const ColorFactory factory(scene, ColorMode::kRgb, 1, walk);
+  const WavelengthSampler factory(scene, ColorMode::kRgb, 1, walk);
   if (!settings.studies_unbounded_weights) {
     require_bounded_weights(factory.weight_growth(), UINT32_MAX);
     if (!meter.views.empty()) require_bounded_weights(shadow_weight_growth(walk), UINT32_MAX);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/sensors/film.h"
 
 namespace freepath {
@@ -33,32 +33,32 @@ class LayerRecorder {
   /// A path is about to scatter.
   /// @param scatterings so far
   /// @param radiance that it has collected so far
-  void scattering(uint32_t sample, uint32_t scatterings, const Spectrum& radiance) {
+  void scattering(uint32_t sample, uint32_t scatterings, const Rgb& radiance) {
     if (scatterings == 0) add(samples_[sample].unscattered, radiance);
     if (scatterings == 1) add(samples_[sample].at_most_once, radiance);
   }
   /// A path has ended.
-  void end(uint32_t sample, uint32_t scatterings, const Spectrum& radiance) {
+  void end(uint32_t sample, uint32_t scatterings, const Rgb& radiance) {
     if (scatterings == 0) add(samples_[sample].unscattered, radiance);
     if (scatterings <= 1) add(samples_[sample].at_most_once, radiance);
   }
   /// A path has seen light from outside without a scattering.
-  void background(uint32_t sample, const Spectrum& radiance) {
+  void background(uint32_t sample, const Rgb& radiance) {
     add(samples_[sample].background, radiance);
   }
   /// The first event of a path.
   /// @param weight that its depth has
-  void event(uint32_t sample, const Spectrum& normal, const Spectrum& position, float weight) {
+  void event(uint32_t sample, const Rgb& normal, const Rgb& position, float weight) {
     add(samples_[sample].normal, normal * weight);
     add(samples_[sample].position, position * weight);
   }
   /// A path's first flights have come to a surface, or out.
-  void transmittance(uint32_t sample, const Spectrum& value) {
+  void transmittance(uint32_t sample, const Rgb& value) {
     add(samples_[sample].transmittance, value);
   }
 
  private:
-  static void add(Spectrum& sum, const Spectrum& value) {
+  static void add(Rgb& sum, const Rgb& value) {
     if (is_finite(value)) sum += value;
   }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "freepath/paths/media_set.h"
-#include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/paths/sample_spectra.h"
 
 namespace freepath {
 
@@ -20,7 +20,7 @@ using PlaceId = uint32_t;
 class MediaPlaces {
  public:
   /// @param scene,factory must outlive this
-  MediaPlaces(const PathScene& scene, const ColorFactory& factory)
+  MediaPlaces(const PathScene& scene, const WavelengthSampler& factory)
       : scene_(scene), factory_(factory) {}
 
   /// The number of a set, which is made if there is none.
@@ -33,7 +33,7 @@ class MediaPlaces {
     return known->second;
   }
 
-  /// The medium, or combination of media, that fills a place: ColorFactory::medium_of.
+  /// The medium, or combination of media, that fills a place: WavelengthSampler::medium_of.
   MediumId medium(PlaceId place) const { return media_[place]; }
 
   /// The media beyond the boundary of a shape.
@@ -52,7 +52,7 @@ class MediaPlaces {
 
  private:
   const PathScene& scene_;
-  const ColorFactory& factory_;
+  const WavelengthSampler& factory_;
   std::vector<MediaSet> sets_;
   std::vector<MediumId> media_;
   std::map<MediaSet, PlaceId> numbers_;

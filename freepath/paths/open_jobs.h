@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/paths/flux_tally.h"
 #include "freepath/paths/layer_recorder.h"
 #include "freepath/paths/path_job.h"
@@ -52,9 +52,9 @@ class OpenJobs {
   const Job& operator[](uint32_t number) const { return jobs_[number]; }
 
   std::vector<PathSample> results;
-  std::vector<Channels> spectra;   ///< Of the same paths, if the film records them.
-  LayerRecorder layers;            ///< Of the results.
-  std::vector<FluxRecord> fluxes;  ///< Of paths of light, which clear theirs as they start.
+  std::vector<SampledSpectrum> spectra;  ///< Of the same paths, if the film records them.
+  LayerRecorder layers;                  ///< Of the results.
+  std::vector<FluxRecord> fluxes;        ///< Of paths of light, which clear theirs as they start.
 
  private:
   /// The lowest place where so many results lie beside those of open jobs.

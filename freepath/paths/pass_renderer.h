@@ -139,9 +139,9 @@ class PassRenderer {
   }
 
   /// Hands out pixels to threads.
-  class PixelDealer {
+  class PixelRefill {
    public:
-    explicit PixelDealer(std::vector<Run> runs) : runs_(std::move(runs)) {}
+    explicit PixelRefill(std::vector<Run> runs) : runs_(std::move(runs)) {}
 
     /// The next pixels, at most so many; none if there are no more.
     Run next(std::size_t wanted) {
@@ -165,18 +165,18 @@ class PassRenderer {
     const std::vector<Run> runs = runs_of_pass();
     std::size_t pixels = 0;
     for (const Run& run : runs) pixels += run.count;
-    PixelDealer dealer(runs);
+    PixelRefill refill(runs);
     threads_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<int>(0, threads_.count(), 1),
-          [&](const tbb::blocked_range<int>&) { work(samples, dealer); },
+          [&](const tbb::blocked_range<int>&) { work(samples, refill); },
           tbb::simple_partitioner());
     });
     return static_cast<double>(pixels) / static_cast<double>(film_.pixel_count());
   }
 
   /// One thread's part of a pass: takes the next pixels until there are none.
-  void work(uint32_t samples, PixelDealer& dealer) {
+  void work(uint32_t samples, PixelRefill& refill) {
     const auto pixels = static_cast<double>(film_.pixel_count());
     PathWavefront& wavefront = wavefronts_.local();
     const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
@@ -187,7 +187,7 @@ class PassRenderer {
     PathJobSource jobs;
     jobs.next = [&]() -> std::optional<PathJob> {
       if (over_) return std::nullopt;
-      const Run run = dealer.next(std::max<std::size_t>(paths / samples, fewest));
+      const Run run = refill.next(std::max<std::size_t>(paths / samples, fewest));
       if (run.count == 0) return std::nullopt;
       began = time();
       return PathJob{run.first, run.count, settings_.first_sample + samples_done_, samples};
@@ -236,7 +236,7 @@ class PassRenderer {
     next_report_ = now + kSecondsBetweenReports;
     checkpoint(now);
     if (!progress_) return;
-    if (!progress_({paths_done_, double(settings_.samples), now})) deadline_.wish_to_stop(now);
+    if (!progress_({paths_done_, double(settings_.samples), now})) deadline_.request_stop(now);
   }
 
   /// Hands over what there is, if it is time. By one thread at a time.

@@ -31,7 +31,7 @@ void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, s
     record_medium_event(path, flights_.t[i], scatterer_of(path, component));
   }
   if (is_cut(path)) {
-    count_cut(path, Channels(1));
+    count_cut(path, SampledSpectrum(1));
     path.is_dead = true;
     return;
   }
@@ -69,7 +69,7 @@ bool PathWavefront::survives(ScenePath& path, float u) const {
   return true;
 }
 
-float PathWavefront::brightness(const ScenePath& path, const Channels& radiance, bool in_rgb,
+float PathWavefront::brightness(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb,
                                 float distance) const {
   if (setup_.shadow_guide == nullptr || !ShadowGuide::plays(path.scatterings, distance)) {
     return kNeverFaint;
@@ -82,7 +82,7 @@ float PathWavefront::brightness(const ScenePath& path, const Channels& radiance,
 void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
   Scattering& scattering = scattered_[i];
   scattering.in_rgb = sees_rgb(path);
-  const Channels light = light_spectra(path, scattering.in_rgb)[only_light_->radiance];
+  const SampledSpectrum light = light_spectra(path, scattering.in_rgb)[only_light_->radiance];
   scattering.radiance = light_throughput(path, scattering.in_rgb) * light * only_light_->scale;
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, only_light_->distance);
@@ -93,7 +93,7 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
   scattering.in_rgb = sees_rgb(path);
   std::array<float, 3> u{};
   for (uint32_t k = 0; k < 3; ++k) u[k] = scatterings_.numbers[kLightNumber + k][i];
-  const LightDraw draw =
+  const LightSample draw =
       draw_light(vector_at(scatterings_.position, i), light_spectra(path, scattering.in_rgb), u);
   scattering.end = shadow_end(draw);
   scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance;
@@ -121,7 +121,7 @@ void PathWavefront::cast_shadow(std::size_t i) {
   if (share == 0) return;
   const float survival = scatterings_.shadow_survival[i];
   if (survival < 1 && scatterings_.numbers[kShadowNumber][i] >= survival) return;
-  Channels radiance = scattering.radiance * share;
+  SampledSpectrum radiance = scattering.radiance * share;
   if (survival < 1) radiance *= 1 / survival;
   if (is_black(radiance)) return;
   const ScenePath& path = paths_[scattering.slot];

@@ -135,7 +135,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
     path.throughput *= flights_.weight[0][i];
   }
   if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
-    path.radiance = Channels(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
+    path.radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
     path.is_dead = true;
     return;
   }
@@ -168,10 +168,10 @@ void PathWavefront::escape(ScenePath& path) {
       scene_.lights->escape(path.turned_at, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
   const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-  const Channels seen = light_throughput(path, in_rgb) * light.radiance * share;
+  const SampledSpectrum seen = light_throughput(path, in_rgb) * light.radiance * share;
   if (jobs_.layers.on() && path.scatterings == 0) {
-    jobs_.layers.background(path.result,
-                            rgb_of(path, in_rgb ? Channels() : seen, in_rgb ? seen : Channels()));
+    jobs_.layers.background(path.result, rgb_of(path, in_rgb ? SampledSpectrum() : seen,
+                                                in_rgb ? seen : SampledSpectrum()));
   }
   if (setup_.transparent && path.scatterings == 0) return;
   (in_rgb ? path.rgb : path.radiance) += seen;

@@ -28,7 +28,7 @@ void PathWavefront::start_light(std::size_t path_number, ScenePath& path) {
   path.pixel = static_cast<uint32_t>(open.job.first_pixel);
   path.sample_key = open.job.first_sample + static_cast<uint32_t>(path_number);
   path.colors = setup_.colors.front().get();
-  path.throughput = Channels(1.0F);
+  path.throughput = SampledSpectrum(1.0F);
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
                       stream_number(StreamPurpose::kCamera, 0));
   const FluxMeter::Start start = meter_->start(random);
@@ -140,8 +140,8 @@ bool PathWavefront::take_branch(ScenePath& path) {
   const FluxRecord::Branch& branch = waiting.back();
   path.origin = branch.origin;
   path.direction = branch.direction;
-  path.throughput = Channels(branch.weight);
-  path.density = Channels(branch.density);
+  path.throughput = SampledSpectrum(branch.weight);
+  path.density = SampledSpectrum(branch.density);
   path.pixel = branch.pixel;
   path.level = branch.level;
   path.flights = branch.flights;

@@ -8,7 +8,7 @@
 namespace freepath {
 namespace {
 
-Spectrum to_spectrum(const Vec3f& rgb) { return {rgb.x, rgb.y, rgb.z}; }
+Rgb to_spectrum(const Vec3f& rgb) { return {rgb.x, rgb.y, rgb.z}; }
 
 }  // namespace
 
@@ -26,9 +26,9 @@ void PathWavefront::record_medium_event(ScenePath& path, float t,
   const SceneMedium& medium = scene_.media[scatterer.medium];
   // Weighted absorption has put the albedo into each channel's weight: no matter of depth. Of a
   // channel without one nothing is left; it counts as if it had come here by chance alone.
-  Channels weight = path.throughput;
+  SampledSpectrum weight = path.throughput;
   if (setup_.absorption == Absorption::kWeighted) {
-    const Channels albedo = medium.albedo(scatterer.component, path.colors->spectra);
+    const SampledSpectrum albedo = medium.albedo(scatterer.component, path.colors->spectra);
     for (int c = 0; c < path.colors->spectra.channels(); ++c) {
       weight[c] = albedo[c] > 0 ? weight[c] / albedo[c] : 1.0F;
     }
@@ -37,8 +37,8 @@ void PathWavefront::record_medium_event(ScenePath& path, float t,
                -path.direction);
 }
 
-void PathWavefront::record_event(ScenePath& path, float t, const Channels& weight,
-                                 const Channels& albedo, const Vec3f& normal) {
+void PathWavefront::record_event(ScenePath& path, float t, const SampledSpectrum& weight,
+                                 const SampledSpectrum& albedo, const Vec3f& normal) {
   PathSample& sample = result_of(path);
   sample.alpha = 1;
   sample.albedo = {albedo[0], albedo[1], albedo[2]};
@@ -50,20 +50,20 @@ void PathWavefront::record_event(ScenePath& path, float t, const Channels& weigh
                      sample.depth_weight / static_cast<float>(setup_.factory->paths_per_sample()));
 }
 
-Spectrum PathWavefront::rgb_of(const ScenePath& path, const Channels& radiance,
-                               const Channels& rgb) const {
+Rgb PathWavefront::rgb_of(const ScenePath& path, const SampledSpectrum& radiance,
+                          const SampledSpectrum& rgb) const {
   const SpectrumValues& spectra = path.colors->spectra;
   if (is_balanced_ && !spectra.is_spectral()) {
-    const Channels sum = radiance + rgb;
-    return Spectrum(sum[0], sum[1], sum[2]) * scene_.exposure_scale;
+    const SampledSpectrum sum = radiance + rgb;
+    return Rgb(sum[0], sum[1], sum[2]) * scene_.exposure_scale;
   }
   const Vec3f sum = spectra.to_rgb(radiance) + Vec3f(rgb[0], rgb[1], rgb[2]);
   return to_spectrum(sum * scene_.white_balance * scene_.exposure_scale);
 }
 
-Spectrum PathWavefront::transmittance_of(const ScenePath& path) const {
+Rgb PathWavefront::transmittance_of(const ScenePath& path) const {
   const SpectrumValues& spectra = path.colors->spectra;
-  const Channels& t = path.throughput;
+  const SampledSpectrum& t = path.throughput;
   if (!spectra.is_spectral()) return {t[0], t[1], t[2]};
   return to_spectrum(spectra.to_rgb(t * spectra.illuminant(Vec3f(1))));
 }
@@ -91,7 +91,7 @@ void PathWavefront::finish(ScenePath& path) {
 void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const {
   const PathJob& job = done.job;
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
-  Channels radiance;
+  SampledSpectrum radiance;
   for (std::size_t c = 0; c < per_sample; ++c) {
     radiance += jobs_.spectra[done.result_of(sample, per_sample) + c];
   }

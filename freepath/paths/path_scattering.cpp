@@ -8,15 +8,15 @@ namespace freepath {
 
 bool PathWavefront::sees_rgb(const ScenePath& path) const {
   if (!setup_.factory->sees_rgb() || path.is_coloured || records_spectra_) return false;
-  const Channels& c = path.throughput;
+  const SampledSpectrum& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
     if (c[i] != c[0]) return false;
   }
   return true;
 }
 
-Channels PathWavefront::light_throughput(const ScenePath& path, bool in_rgb) {
-  return in_rgb ? Channels(path.throughput[0]) : path.throughput;
+SampledSpectrum PathWavefront::light_throughput(const ScenePath& path, bool in_rgb) {
+  return in_rgb ? SampledSpectrum(path.throughput[0]) : path.throughput;
 }
 
 const SpectrumValues& PathWavefront::light_spectra(const ScenePath& path, bool in_rgb) const {
@@ -124,13 +124,13 @@ PathWavefront::Departure PathWavefront::depart(const ScenePath& path, const Surf
   return departure;
 }
 
-LightDraw PathWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
-                                    const std::array<float, 3>& u) const {
-  LightDraw light = scene_.lights->sample(position, spectra, u[0], u[1], u[2]);
+LightSample PathWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                                      const std::array<float, 3>& u) const {
+  LightSample light = scene_.lights->sample(position, spectra, u[0], u[1], u[2]);
   if (!has_alpha_ || !light.area || light.area->light >= shapes_of_lights_.size()) return light;
   // Paths meet the light with this chance, so that its mean is the same.
   if (const std::optional<uint32_t> shape = shapes_of_lights_[light.area->light]) {
-    const LightDraw::Area& area = *light.area;
+    const LightSample::Area& area = *light.area;
     light.radiance *= scene_.alpha_at({.position = position + light.direction * light.distance,
                                        .normal = area.normal,
                                        .shading_normal = area.normal,
@@ -190,7 +190,7 @@ void PathWavefront::meet_surface(std::size_t slot) {
   scatter_at_surface(slot, hit);
 }
 
-void PathWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
+void PathWavefront::count_cut(const ScenePath& path, const SampledSpectrum& albedo) {
   const int channels = path.colors->spectra.channels();
   float sum = 0;
   for (int c = 0; c < channels; ++c) sum += path.throughput[c] * albedo[c];
@@ -198,7 +198,8 @@ void PathWavefront::count_cut(const ScenePath& path, const Channels& albedo) {
 }
 
 float PathWavefront::shadow_survival(const ScenePath& path, const Vec3f& position,
-                                     const LightDraw& light, const Channels& radiance) const {
+                                     const LightSample& light,
+                                     const SampledSpectrum& radiance) const {
   if (setup_.shadow_guide == nullptr) return 1;
   return setup_.shadow_guide->roulette(path.medium)
       .survival(position, light.direction, brightness(path, radiance, false, light.distance));
@@ -236,12 +237,12 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
   } else if (!material.is_specular() && scene_.lights->is_drawn()) {
     // Braces keep the order of draws.
     const std::array<float, 3> u{random.uniform(), random.uniform(), random.uniform()};
-    const LightDraw light = draw_light(position, path.colors->spectra, u);
+    const LightSample light = draw_light(position, path.colors->spectra, u);
     if (light.pdf > 0) {
       const MaterialValue f =
           material.evaluate(hit.point, path.direction, light.direction, random, context);
       const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
-      Channels radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
+      SampledSpectrum radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
       const float survival = shadow_survival(path, position, light, radiance);
       if (survival < 1) radiance *= random.uniform() < survival ? 1 / survival : 0.0F;
       if (!is_black(radiance)) {

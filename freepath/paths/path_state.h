@@ -4,18 +4,18 @@
 #include <cstdint>
 #include <limits>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/paths/media_places.h"
-#include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/paths/sample_spectra.h"
 
 namespace freepath {
 
 /// A path. Its first two cache lines are all that a flight between scatterings in a medium
 /// touches: thousands of paths are in flight, and most of their events are these.
 struct alignas(64) ScenePath {
-  const PathColors* colors = nullptr;
+  const SampleSpectra* colors = nullptr;
   uint64_t lookups = 0;       ///< Look-ups of densities so far.
   MediumId medium = kVacuum;  ///< What the media around are together.
   int channel = -1;           ///< The one channel that it carries, or -1.
@@ -39,12 +39,12 @@ struct alignas(64) ScenePath {
   bool is_sent = false;     ///< Its next ray lies in a stream, or waits in vacuum.
   bool is_in_rays = false;  ///< Its ray lies in a stream alone: `origin` and so on are of old.
 
-  alignas(64) Channels throughput;
-  Channels radiance;
+  alignas(64) SampledSpectrum throughput;
+  SampledSpectrum radiance;
   /// The part of the radiance that is known in R, G, B: what a throughput without colour brings of
   /// lights, whose integral over all wavelengths is known.
-  Channels rgb;
-  Channels density{1.0F};  ///< FlightStream::density of the flights so far.
+  SampledSpectrum rgb;
+  SampledSpectrum density{1.0F};  ///< FlightStream::density of the flights so far.
 
   Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
   Vec3f direction{0};  ///< Of its ray, unit [world].
@@ -60,7 +60,7 @@ struct alignas(64) ScenePath {
   uint32_t level = 0;   ///< Planes where paths split that lie above.
 
   /// The mean over the channels that it carries.
-  float mean(const Channels& values) const {
+  float mean(const SampledSpectrum& values) const {
     if (channel >= 0) return values[channel];
     const int channels = colors->spectra.channels();
     float sum = 0;

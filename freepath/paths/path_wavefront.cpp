@@ -66,7 +66,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
     if (scope.stopped() || jobs.stop()) return false;
     fly();
     shadows_.trace(paths_, counts_.shadow_rays,
-                   [&](const ScenePath& path, uint32_t cell, const Channels& weight) {
+                   [&](const ScenePath& path, uint32_t cell, const SampledSpectrum& weight) {
                      deposit(path, cell, weight[0]);
                    });
     emissions_.trace(paths_, counts_.free_paths);

@@ -12,10 +12,10 @@
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
 #include "freepath/paths/open_jobs.h"
-#include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_job.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/path_state.h"
+#include "freepath/paths/sample_spectra.h"
 #include "freepath/paths/shadow_guide.h"
 #include "freepath/paths/shadow_tracer.h"
 #include "freepath/paths/walk_batches.h"
@@ -31,7 +31,7 @@ inline constexpr float kLargestThroughput = 1e28F;
 /// What all paths of a picture share.
 struct PathSetup {
   const PathScene* scene = nullptr;
-  const ColorFactory* factory = nullptr;
+  const WavelengthSampler* factory = nullptr;
   uint64_t seed = 0;
   Absorption absorption = Absorption::kWeighted;
   uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
@@ -45,7 +45,7 @@ struct PathSetup {
   const ShadowGuide* shadow_guide = nullptr;
   std::size_t slots = kPathsInFlight;
   /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
-  std::vector<std::shared_ptr<const PathColors>> colors;
+  std::vector<std::shared_ptr<const SampleSpectra>> colors;
   uint32_t first_set = 0;
   /// Where paths begin at a meter, as light does, and not at the camera: what there is of it, and
   /// who sums what they bring. Such paths carry one channel, and lights have no part in it.
@@ -102,7 +102,7 @@ class PathWavefront {
   /// places.
   void end_paths(const PathJobSource& jobs, Film& film);
   /// @param pixel of the picture
-  const PathColors& colors_of(uint32_t pixel, uint32_t sample) const {
+  const SampleSpectra& colors_of(uint32_t pixel, uint32_t sample) const {
     return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
   }
   /// Puts the ray of a path among those that fly next.
@@ -130,7 +130,7 @@ class PathWavefront {
   bool sees_rgb(const ScenePath& path) const;
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
   /// A path's throughput in the channels of these spectra.
-  static Channels light_throughput(const ScenePath& path, bool in_rgb);
+  static SampledSpectrum light_throughput(const ScenePath& path, bool in_rgb);
   void escape(ScenePath& path);
   /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
   /// opaque one is never passed over, nor a light; ties_ are the others.
@@ -155,7 +155,7 @@ class PathWavefront {
     path.place = place;
     path.medium = places_.medium(place);
   }
-  ShadowEnd shadow_end(const LightDraw& light) const {
+  ShadowEnd shadow_end(const LightSample& light) const {
     if (!light.area || light.area->light >= shapes_of_lights_.size()) return {light.distance};
     const std::optional<uint32_t>& shape = shapes_of_lights_[light.area->light];
     if (!shape) return {light.distance};
@@ -163,8 +163,8 @@ class PathWavefront {
   }
   /// A light for a position; what its own alpha leaves of it.
   /// @param u numbers in [0, 1), as SceneLights::sample() takes them
-  LightDraw draw_light(const Vec3f& position, const SpectrumValues& spectra,
-                       const std::array<float, 3>& u) const;
+  LightSample draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                         const std::array<float, 3>& u) const;
   /// Whether a path goes on at a surface as if there were none.
   bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
   /// Puts a path that a medium scatters into the queue for it.
@@ -184,12 +184,12 @@ class PathWavefront {
   void draw_light_of(std::size_t scattering, const ScenePath& path);
   /// Says how bright a radiance is to the picture: the mean of the channels, in units of white.
   /// Huge where the shadow ray to a light at that distance does not play.
-  float brightness(const ScenePath& path, const Channels& radiance, bool in_rgb,
+  float brightness(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb,
                    float distance) const;
   /// With what probability to cast a shadow ray from a surface that brings this if nothing is in
   /// between.
-  float shadow_survival(const ScenePath& path, const Vec3f& position, const LightDraw& light,
-                        const Channels& radiance) const;
+  float shadow_survival(const ScenePath& path, const Vec3f& position, const LightSample& light,
+                        const SampledSpectrum& radiance) const;
   /// Casts a ray towards that light.
   void cast_shadow(std::size_t scattering);
   /// Draws the next direction of a scattering whose phase function the lanes don't know.
@@ -201,14 +201,15 @@ class PathWavefront {
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
     if (meter_ != nullptr || scene_.domain) return nullptr;
-    const bool wanted = setup_.samples_emission.value_or(!setup_.factory->glow_is_spread(medium));
+    const bool wanted =
+        setup_.samples_emission.value_or(!setup_.factory->emission_is_uniform(medium));
     return wanted ? setup_.factory->guide(medium) : nullptr;
   }
   void draw_emission(std::size_t scattering, const EmissionGuide& guide);
   /// Whether the limit of scatterings ends a path.
   bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
   /// @param albedo of what would scatter it
-  void count_cut(const ScenePath& path, const Channels& albedo);
+  void count_cut(const ScenePath& path, const SampledSpectrum& albedo);
   /// By Russian roulette.
   /// @param u in (0, 1)
   /// @return false if the path has ended
@@ -220,12 +221,13 @@ class PathWavefront {
   MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component) const;
   /// Records the first event of a path.
   /// @param weight its probability over that with which it came about, in each channel
-  void record_event(ScenePath& path, float t, const Channels& weight, const Channels& albedo,
-                    const Vec3f& normal);
+  void record_event(ScenePath& path, float t, const SampledSpectrum& weight,
+                    const SampledSpectrum& albedo, const Vec3f& normal);
   void record_medium_event(ScenePath& path, float t, const MediumWalkers::Origin& scatterer);
   /// R, G, B on the film of both parts of a radiance.
-  Spectrum rgb_of(const ScenePath& path, const Channels& radiance, const Channels& rgb) const;
-  Spectrum transmittance_of(const ScenePath& path) const;
+  Rgb rgb_of(const ScenePath& path, const SampledSpectrum& radiance,
+             const SampledSpectrum& rgb) const;
+  Rgb transmittance_of(const ScenePath& path) const;
   // Paths of light: path_fluxes.cpp.
   void start_light(std::size_t path_number, ScenePath& path);
   FluxRecord& record_of(const ScenePath& path) { return jobs_.fluxes[path.result]; }
@@ -255,7 +257,7 @@ class PathWavefront {
   std::optional<Box3f> everything_;                        // around the medium, if that is all
   bool is_balanced_ = true;                                // whether white stays as it is
   bool has_alpha_ = false;                                 // whether a shape of the scene has
-  std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightDraw::Area::light
+  std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightSample::Area::light
   std::vector<TiedSurface> ties_;                          // of the surface that a path meets
   std::vector<ScenePath> paths_;                           // in slots
   std::vector<SurfaceHit> hits_;                           // of the paths, if there are surfaces
@@ -270,8 +272,8 @@ class PathWavefront {
     uint32_t slot = 0;
     bool in_rgb = false;  ///< Whether the light is.
     const PhaseFunction* phase = nullptr;
-    ShadowEnd end;      ///< Of the shadow ray.
-    Channels radiance;  ///< What the light brings unshadowed, times the density of the draw.
+    ShadowEnd end;             ///< Of the shadow ray.
+    SampledSpectrum radiance;  ///< What the light brings unshadowed, times the density of the draw.
   };
   /// How the component scatters that the scattering before was of.
   struct Scatterer {
@@ -296,8 +298,8 @@ class PathWavefront {
   bool has_more_jobs_ = false;
   /// The newest job's samples (pixel · samples + sample) in the order in which they start.
   std::vector<uint32_t> order_;
-  std::vector<uint32_t> sets_, begin_of_set_;     // for that order
-  const PathColors* colors_of_sample_ = nullptr;  // of the sample whose paths start now
+  std::vector<uint32_t> sets_, begin_of_set_;        // for that order
+  const SampleSpectra* colors_of_sample_ = nullptr;  // of the sample whose paths start now
   uint32_t hashed_pixel_ = UINT32_MAX;
   SampleSequence::Hashes film_hashes_{};  // of that pixel
   bool records_spectra_ = false;

@@ -23,7 +23,7 @@ constexpr std::size_t kPathsOfSet = 1024;
 constexpr std::size_t kFewestJobs = 16;
 
 /// Pixels of a job of a picture that has so many.
-std::size_t fewest_pixels(const ColorFactory& factory, std::size_t pixels, uint32_t samples) {
+std::size_t fewest_pixels(const WavelengthSampler& factory, std::size_t pixels, uint32_t samples) {
   if (!factory.depends_on_wavelengths()) return 1;
   const std::size_t wanted = kPathsOfSet * factory.sets_per_block() / samples;
   return std::max(kPathsOfSet, std::min(wanted, pixels / kFewestJobs));
@@ -34,7 +34,7 @@ void prepare_colors(PathSetup& setup, uint32_t first_sample, uint32_t samples) {
   const uint32_t block = setup.factory->sets_per_block();
   const uint32_t first = first_sample / block * block;
   const uint32_t count = (first_sample + samples - 1) / block * block + block - first;
-  std::vector<std::shared_ptr<const PathColors>> colors(count);
+  std::vector<std::shared_ptr<const SampleSpectra>> colors(count);
   for (std::size_t i = 0; i < setup.colors.size(); ++i) {
     const std::size_t set = setup.first_set + i;
     if (set >= first && set < std::size_t{first} + count) colors[set - first] = setup.colors[i];
@@ -87,11 +87,11 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   if (!are_same(chromaticities, RgbChromaticities())) {
     result.film.set_chromaticities(chromaticities);
   }
-  std::optional<ColorFactory> made;  // by the threads that are asked for
+  std::optional<WavelengthSampler> made;  // by the threads that are asked for
   Threads(settings.threads).execute([&] {
     made.emplace(scene, mode, settings.wavelengths, settings.walk, settings.chooses_transmittance);
   });
-  const ColorFactory& factory = *made;
+  const WavelengthSampler& factory = *made;
   if (!settings.studies_unbounded_weights) {
     require_bounded_weights(factory.weight_growth(), settings.max_scatterings);
     if (!scene.media.empty()) {

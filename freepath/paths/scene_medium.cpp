@@ -9,8 +9,8 @@
 namespace freepath {
 namespace {
 
-Channels thermal_channels(double temperature, const SpectrumValues& spectra) {
-  Channels radiance;
+SampledSpectrum thermal_channels(double temperature, const SpectrumValues& spectra) {
+  SampledSpectrum radiance;
   if (!spectra.is_spectral()) {
     const Vec3d rgb = spectra.rgb_of_xyz(thermal_xyz(temperature));
     return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
@@ -78,8 +78,9 @@ BoundMedium SceneMedium::bind(const SpectrumValues& spectra) const {
       const auto fields = tabulate_radiance(
           *component.temperature, [&](double kelvin) { return thermal_channels(kelvin, spectra); });
       std::copy(fields.begin(), fields.end(), target.radiance.begin());
-      const Channels factor =
-          component.temperature_factor ? spectra[*component.temperature_factor] : Channels(1.0F);
+      const SampledSpectrum factor = component.temperature_factor
+                                         ? spectra[*component.temperature_factor]
+                                         : SampledSpectrum(1.0F);
       for (int c = 0; c < spectra.channels(); ++c) {
         target.emission[c] = fields[0].field ? component.radiance_scale * factor[c] : 0;
       }
@@ -107,8 +108,8 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
       Component component;
       component.density =
           make_voxels(colors, name_, value_of(sigma, SpectrumRole::kReflectance)(c));
-      component.sigma_a = Spectrum(scatters ? 0.0F : colors.scale);
-      component.sigma_s = Spectrum(scatters ? colors.scale : 0.0F);
+      component.sigma_a = Rgb(scatters ? 0.0F : colors.scale);
+      component.sigma_s = Rgb(scatters ? colors.scale : 0.0F);
       components.push_back(component);
       ComponentChannels& target = bound.channels.components.emplace_back();
       (scatters ? target.sigma_s : target.sigma_a)[c] = colors.scale;
@@ -149,10 +150,10 @@ bool SceneMedium::is_constant(const SpectrumTable& table) const {
                                        });
 }
 
-Channels SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {
-  if (components_.empty()) return Channels(1.0F);
+SampledSpectrum SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {
+  if (components_.empty()) return SampledSpectrum(1.0F);
   const SceneMediumComponent& values = components_[std::min(component, components_.size() - 1)];
-  Channels albedo;
+  SampledSpectrum albedo;
   for (int c = 0; c < spectra.channels(); ++c) {
     const float sigma_s = spectra[values.sigma_s][c];
     const float sigma_t = sigma_s + spectra[values.sigma_a][c];
@@ -179,7 +180,7 @@ SceneMedium SceneMedium::homogeneous(std::string name, SceneMediumComponent comp
   field->index_to_world = index_to_box * box_to_world;
   Component uniform;
   uniform.density = field;
-  uniform.sigma_s = Spectrum(largest_sigma_t);
+  uniform.sigma_s = Rgb(largest_sigma_t);
   SceneMedium medium(std::move(name),
                      std::make_shared<const Medium>(Medium({uniform}).clipped_to_middles()),
                      {std::move(component)});

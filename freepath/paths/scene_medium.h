@@ -80,7 +80,7 @@ class SceneMedium {
     return phases_[std::min(component, phases_.size() - 1)];
   }
   /// Scattering over extinction of a component, for pictures of it.
-  Channels albedo(std::size_t component, const SpectrumValues& spectra) const;
+  SampledSpectrum albedo(std::size_t component, const SpectrumValues& spectra) const;
   /// Memory that `bind` takes for so many wavelengths, beside what all of them share.
   std::size_t bytes_of_set(int wavelengths) const;
   /// What it fills [world].

@@ -35,7 +35,7 @@ constexpr std::size_t kMostMedia = 4;
 
 }  // namespace
 
-ShadowGuide::ShadowGuide(const ColorFactory& factory, uint64_t seed) {
+ShadowGuide::ShadowGuide(const WavelengthSampler& factory, uint64_t seed) {
   const PathScene& scene = factory.scene();
   if (!scene.lights->is_drawn()) return;
   const double scattered = scene.lights->fluence() / (4 * std::numbers::pi);
@@ -64,9 +64,9 @@ void ShadowGuide::find_dominant(const PathScene& scene) {
     // Points of a lattice, the same for all scenes.
     const double n = i + 0.5;
     const auto u = [&](double step) { return static_cast<float>(n * step - std::floor(n * step)); };
-    const LightDraw light =
+    const LightSample light =
         scene.lights->sample(middle, rgb, u(kLattice[0]), u(kLattice[1]),
-                             std::min(static_cast<float>(n / kDraws), kBelowOne));
+                             std::min(static_cast<float>(n / kDraws), kOneMinusEpsilon));
     if (!(light.pdf > 0) || std::isfinite(light.distance)) continue;
     const float power = (light.radiance[0] + light.radiance[1] + light.radiance[2]) / light.pdf;
     draws.push_back({light.direction, power});

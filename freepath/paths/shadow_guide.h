@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "freepath/base/vector.h"
-#include "freepath/paths/path_colors.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/paths/sample_spectra.h"
 #include "freepath/transport/shadow_roulette.h"
 
 namespace freepath {
@@ -24,7 +24,7 @@ namespace freepath {
 class ShadowGuide {
  public:
   /// @param seed of the estimates of transmittance
-  ShadowGuide(const ColorFactory& factory, uint64_t seed);
+  ShadowGuide(const WavelengthSampler& factory, uint64_t seed);
   ShadowGuide(const ShadowGuide&) = delete;  // its media point at its tables
   ShadowGuide& operator=(const ShadowGuide&) = delete;
 

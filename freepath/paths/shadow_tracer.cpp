@@ -108,7 +108,7 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const
     }
     if (ends) return;
     if (!is_free) {
-      arrival.radiance = Channels();
+      arrival.radiance = SampledSpectrum();
       return;
     }
     begin = end;
@@ -160,7 +160,7 @@ void ShadowTracer::trace_part(Shadow& shadow, Arrival& arrival, const ScenePath&
   while (true) {
     if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings_,
                                   last ? &*last : nullptr)) {
-      arrival.radiance = Channels();
+      arrival.radiance = SampledSpectrum();
       return;
     }
     for (const BoundaryCrossing& crossing : crossings_.all()) {
@@ -191,7 +191,7 @@ void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statisti
     const int channels = batch->walker->transmittance_channels();
     for (std::size_t i = 0; i < batch->count; ++i) {
       const uint32_t owner = batch->owners[i];
-      Channels transmittance(flights_.weight[0][i]);
+      SampledSpectrum transmittance(flights_.weight[0][i]);
       for (int c = 1; c < channels; ++c) transmittance[c] = flights_.weight[c][i];
       if (is_open_) {
         arrivals_[owner].radiance *= transmittance;

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/paths/media_places.h"
 #include "freepath/paths/path_scene.h"
@@ -30,7 +30,7 @@ class ShadowTracer {
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
   /// @param cell of a FluxMeter that it is to add to, and not to the path; kNoCell: none
   void add(uint32_t owner, const ScenePath& path, const Vec3f& origin, const Vec3f& direction,
-           const ShadowEnd& end, PlaceId place, const Channels& radiance, bool is_rgb,
+           const ShadowEnd& end, PlaceId place, const SampledSpectrum& radiance, bool is_rgb,
            uint32_t cell = kNoCell) {
     arrivals_.push_back({radiance, owner, cell, is_rgb});
     if (is_open_) {
@@ -44,14 +44,14 @@ class ShadowTracer {
   }
 
   /// Takes what a ray adds to a cell.
-  using Deposit = std::function<void(const ScenePath&, uint32_t cell, const Channels&)>;
+  using Deposit = std::function<void(const ScenePath&, uint32_t cell, const SampledSpectrum&)>;
   /// Traces all rays, adds to their paths or cells, and forgets them.
   void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics, const Deposit& deposit);
 
  private:
   /// What a ray brings, and whom.
   struct Arrival {
-    Channels radiance;
+    SampledSpectrum radiance;
     uint32_t owner;
     uint32_t cell;
     bool is_rgb;
@@ -67,7 +67,7 @@ class ShadowTracer {
   /// A ray's way through one medium.
   struct Segment {
     uint32_t arrival;
-    Channels transmittance{1.0F};
+    SampledSpectrum transmittance{1.0F};
     uint32_t lookups = 0;
   };
 

@@ -204,8 +204,8 @@ SlabMedium make_slab_medium(std::span<const SlabLayer> layers, int super_voxel, 
   for (const Kind& kind : kinds_of(layers)) {
     Component component;
     component.density = make_field(column, kind.members);
-    component.sigma_s = Spectrum(static_cast<float>(kind.layer.albedo));
-    component.sigma_a = Spectrum(1.0F) - component.sigma_s;
+    component.sigma_s = Rgb(static_cast<float>(kind.layer.albedo));
+    component.sigma_a = Rgb(1.0F) - component.sigma_s;
     component.phase = phase_of(kind.layer);
     components.push_back(std::move(component));
   }

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
 #include "freepath/geometry/shape_geometry.h"
@@ -13,7 +13,7 @@ namespace freepath {
 
 /// A level plane that reflects the same radiance to all directions.
 struct Ground {
-  Spectrum albedo{0.0F};
+  Rgb albedo{0.0F};
   /// Along the axis that points up [world]; none: the bottom of all else.
   std::optional<double> height = {};
   UpAxis up = UpAxis::kY;

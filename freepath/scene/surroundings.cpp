@@ -12,7 +12,7 @@
 namespace freepath {
 namespace {
 
-void check_radiance(const Spectrum& radiance) {
+void check_radiance(const Rgb& radiance) {
   if (is_finite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0) return;
   fail("the radiance of the environment is {},{},{}; it must be finite and not negative",
        radiance.x, radiance.y, radiance.z);
@@ -24,7 +24,7 @@ Surroundings make_surroundings(const LightOptions& options, UpAxis up,
                                std::vector<std::string>* warnings) {
   Surroundings result;
   if (options.sun) result.sun.emplace(options.sun_parameters, up);
-  if (const auto* radiance = std::get_if<Spectrum>(&options.environment)) {
+  if (const auto* radiance = std::get_if<Rgb>(&options.environment)) {
     check_radiance(*radiance);
     result.environment = *radiance;
   } else if (const auto* file = std::get_if<std::string>(&options.environment)) {
@@ -42,7 +42,7 @@ std::vector<LightDescription> to_lights(const Surroundings& surroundings, Spectr
   std::vector<LightDescription> lights;
   if (!surroundings.environment) {
     // The sun alone.
-  } else if (const auto* radiance = std::get_if<Spectrum>(&*surroundings.environment)) {
+  } else if (const auto* radiance = std::get_if<Rgb>(&*surroundings.environment)) {
     check_radiance(*radiance);
     const RgbSpectrum light = RgbSpectrum::illuminant(Vec3d(*radiance), rgb_color_space("srgb"));
     lights.emplace_back(ConstantInfiniteLight{

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/io/invalid_values.h"
 #include "freepath/lights/environment.h"
@@ -22,7 +22,7 @@ struct SkyEnvironment {};
 /// What shines on the volume.
 struct LightOptions {
   /// The sky, one radiance, or the name of a latitude-longitude image.
-  std::variant<SkyEnvironment, Spectrum, std::string> environment = SkyEnvironment{};
+  std::variant<SkyEnvironment, Rgb, std::string> environment = SkyEnvironment{};
   InvalidPolicy invalid = InvalidPolicy::kZero;  ///< For pixels of the image.
   bool sun = true;  ///< Whether its disc shines; it shapes the sky in any case.
   SunParameters sun_parameters{.elevation = 38, .azimuth = 255};
@@ -31,7 +31,7 @@ struct LightOptions {
 /// What shines on a volume from everywhere around.
 struct Surroundings {
   /// The same radiance from everywhere, in linear sRGB, or an image; none: nothing.
-  std::optional<std::variant<Spectrum, ImageEnvironment>> environment = {};
+  std::optional<std::variant<Rgb, ImageEnvironment>> environment = {};
   std::optional<Sun> sun = {};
 };
 

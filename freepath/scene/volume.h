@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
 #include "freepath/media/field.h"
 #include "freepath/media/phase/phase_function.h"
 
@@ -13,13 +13,13 @@ namespace freepath {
 
 /// How a density becomes collision coefficients: an extinction and an albedo, or both coefficients.
 struct OpticalProperties {
-  float density_scale = 1;          ///< Multiplies the densities.
-  Spectrum albedo{0.999F};          ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
-  std::optional<Spectrum> sigma_a;  ///< [1/m per unit of density] with sigma_s replaces the albedo;
-  std::optional<Spectrum> sigma_s;  ///< of the two the one that is not given is 0.
+  float density_scale = 1;     ///< Multiplies the densities.
+  Rgb albedo{0.999F};          ///< sigma_s/sigma_t, where sigma_t is 1 per unit of density.
+  std::optional<Rgb> sigma_a;  ///< [1/m per unit of density] with sigma_s replaces the albedo;
+  std::optional<Rgb> sigma_s;  ///< of the two the one that is not given is 0.
   PhaseFunction phase = {};
   /// L_e; with temperatures, what multiplies their black bodies' radiance, 1 if it is not given.
-  std::optional<Spectrum> emission;
+  std::optional<Rgb> emission;
   double temperature_scale = 1;   ///< [K per unit of the field]
   double temperature_offset = 0;  ///< Value of the field at 0 K.
 };

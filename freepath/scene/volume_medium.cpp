@@ -21,8 +21,8 @@ void set_coefficients(const OpticalProperties& optics, Component& component) {
     fail("the density scale is {}; it must be finite and not negative", optics.density_scale);
   }
   if (optics.sigma_a || optics.sigma_s) {
-    component.sigma_a = optics.sigma_a.value_or(Spectrum(0.0F));
-    component.sigma_s = optics.sigma_s.value_or(Spectrum(0.0F));
+    component.sigma_a = optics.sigma_a.value_or(Rgb(0.0F));
+    component.sigma_s = optics.sigma_s.value_or(Rgb(0.0F));
   } else {
     for (int channel = 0; channel < kChannels; ++channel) {
       const float albedo = optics.albedo[channel];
@@ -31,7 +31,7 @@ void set_coefficients(const OpticalProperties& optics, Component& component) {
       }
     }
     component.sigma_s = optics.albedo;
-    component.sigma_a = Spectrum(1.0F) - optics.albedo;
+    component.sigma_a = Rgb(1.0F) - optics.albedo;
   }
   component.sigma_a *= optics.density_scale;
   component.sigma_s *= optics.density_scale;
@@ -42,7 +42,7 @@ std::array<RadianceField, kChannels> glow_of(const TemperatureEmission& emission
   const RgbColorSpace& space = rgb_color_space("srgb");
   const auto fields = tabulate_radiance(emission, [&](double kelvin) {
     const Vec3d rgb = space.from_xyz(thermal_xyz(kelvin));
-    Channels radiance;
+    SampledSpectrum radiance;
     for (int c = 0; c < kChannels; ++c) radiance[c] = static_cast<float>(rgb[c]);
     return radiance;
   });
@@ -57,14 +57,14 @@ void add_components(Volume volume, std::vector<Component>& components,
     fail("a volume has one density, or three for R, G and B, not {}", densities);
   }
   std::array<RadianceField, kChannels> glow;
-  Spectrum emission = volume.optics.emission.value_or(Spectrum(0.0F));
+  Rgb emission = volume.optics.emission.value_or(Rgb(0.0F));
   std::optional<TemperatureEmission> temperature;
   if (volume.temperature) {
     temperature = {volume.temperature, volume.optics.temperature_scale,
                    volume.optics.temperature_offset};
     glow = glow_of(*temperature);
-    const Spectrum scale = volume.optics.emission.value_or(Spectrum(1.0F));
-    emission = glow[0].field ? scale : Spectrum(0.0F);
+    const Rgb scale = volume.optics.emission.value_or(Rgb(1.0F));
+    emission = glow[0].field ? scale : Rgb(0.0F);
   }
   for (std::size_t i = 0; i < densities; ++i) {
     Component component;
@@ -74,7 +74,7 @@ void add_components(Volume volume, std::vector<Component>& components,
     component.emission = emission;
     set_coefficients(volume.optics, component);
     if (densities > 1) {
-      Spectrum only(0.0F);
+      Rgb only(0.0F);
       only[static_cast<int>(i)] = 1;
       component.sigma_a *= only;
       component.sigma_s *= only;
@@ -132,13 +132,13 @@ void check_depth_of_part(const Medium& medium, const WalkPart& medium_part) {
 }
 
 /// A coefficient of any size. Equal channels are the same at all wavelengths.
-SpectralDistribution coefficient(const Spectrum& rgb, const RgbColorSpace& space) {
+SpectralDistribution coefficient(const Rgb& rgb, const RgbColorSpace& space) {
   if (rgb.x == rgb.y && rgb.y == rgb.z) return {double{rgb.x}};
   return RgbSpectrum::unbounded(Vec3d(rgb), space);
 }
 
 std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, SpectrumTable& table) {
-  const auto add = [&](const Spectrum& rgb) {
+  const auto add = [&](const Rgb& rgb) {
     return table.add(coefficient(rgb, table.space()), SpectrumRole::kReflectance);
   };
   std::vector<SceneMediumComponent> spectra;

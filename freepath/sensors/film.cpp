@@ -70,7 +70,7 @@ double Film::Pixel::square(int channel) const {
   return Sum3::value(squares[channel], square_tops[channel]);
 }
 
-void Film::add_to(std::size_t pixel, Sum which, const Spectrum& value) {
+void Film::add_to(std::size_t pixel, Sum which, const Rgb& value) {
   if (places_[which] < 0) return;
   const std::size_t first = pixel * sums_per_pixel_ + places_[which];
   for (int channel = 0; channel < kChannels; ++channel) {
@@ -119,7 +119,7 @@ void Film::add_layers(std::size_t pixel, const LayerSample& sample) {
 }
 
 void Film::add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
-                        const Channels& radiance) {
+                        const SampledSpectrum& radiance) {
   for (std::size_t i = 0; i < wavelengths.size(); ++i) {
     const int bucket = buckets_.bucket_of(wavelengths[i]);
     if (bucket < 0) continue;

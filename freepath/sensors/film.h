@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "freepath/base/binned_sum.h"
-#include "freepath/base/channels.h"
-#include "freepath/base/spectrum.h"
+#include "freepath/base/rgb.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/io/image.h"
 #include "freepath/sensors/layers.h"
 #include "freepath/sensors/pixel_window.h"
@@ -20,25 +20,25 @@ namespace freepath {
 
 /// What one path found.
 struct PathSample {
-  Spectrum radiance{0.0F};  ///< Estimate of the radiance that reaches the film.
-  float alpha = 0;          ///< Estimate of 1 - transmittance along the camera ray.
-  Spectrum albedo{0.0F};    ///< Albedo at the first scatter; 0 if there was none.
-  float depth = 0;          ///< Distance to the first scatter [world].
-  float depth_weight = 0;   ///< 1 if there was a first scatter, else 0 (or its weight).
-  float lookups = 0;        ///< Look-ups of fields along the path.
+  Rgb radiance{0.0F};      ///< Estimate of the radiance that reaches the film.
+  float alpha = 0;         ///< Estimate of 1 - transmittance along the camera ray.
+  Rgb albedo{0.0F};        ///< Albedo at the first scatter; 0 if there was none.
+  float depth = 0;         ///< Distance to the first scatter [world].
+  float depth_weight = 0;  ///< 1 if there was a first scatter, else 0 (or its weight).
+  float lookups = 0;       ///< Look-ups of fields along the path.
   /// Whether its weight left the range of float: what it found is not known, and 0 here.
   bool overflowed = false;
 };
 
 /// What one path found for layers that few ask for (kPathLayers).
 struct LayerSample {
-  Spectrum normal{0.0F};         ///< Times depth_weight.
-  Spectrum position{0.0F};       ///< Times depth_weight [world].
-  Spectrum transmittance{0.0F};  ///< 0 of a path that ended in a medium.
+  Rgb normal{0.0F};         ///< Times depth_weight.
+  Rgb position{0.0F};       ///< Times depth_weight [world].
+  Rgb transmittance{0.0F};  ///< 0 of a path that ended in a medium.
   // Parts of the radiance, each with the one before.
-  Spectrum background{0.0F};    ///< From outside, not scattered.
-  Spectrum unscattered{0.0F};   ///< From wherever, not scattered.
-  Spectrum at_most_once{0.0F};  ///< Scattered at most once.
+  Rgb background{0.0F};    ///< From outside, not scattered.
+  Rgb unscattered{0.0F};   ///< From wherever, not scattered.
+  Rgb at_most_once{0.0F};  ///< Scattered at most once.
 
   /// Adds what another channel's path of the same sample has found.
   LayerSample& operator+=(const LayerSample& other) {
@@ -103,7 +103,7 @@ class Film {
   /// @param wavelengths [nm], those of the first channels of the radiance
   /// @param radiance finite
   void add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
-                    const Channels& radiance);
+                    const SampledSpectrum& radiance);
 
   /// Adds the samples of a pixel of another film, which are other ones than its own.
   /// @param other with the same layers and buckets
@@ -192,7 +192,7 @@ class Film {
   static SumPlaces places_of(LayerSet layers, int& count);
 
   void add_layers(std::size_t pixel, const LayerSample& sample);
-  void add_to(std::size_t pixel, Sum which, const Spectrum& value);
+  void add_to(std::size_t pixel, Sum which, const Rgb& value);
   /// Of a sum that has a place.
   double sum_of(std::size_t pixel, Sum which, int channel) const;
   void put_layer(Layer layer, std::size_t pixel, std::vector<float>& values) const;

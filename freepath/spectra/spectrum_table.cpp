@@ -20,19 +20,20 @@ Vec3d reflected_rgb(const SpectralDistribution& spectrum, const RgbColorSpace& s
   return rgb;
 }
 
-Channels to_channels(const Vec3d& rgb) {
+SampledSpectrum to_channels(const Vec3d& rgb) {
   return {static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z)};
 }
 
-Channels to_channels(const std::array<double, kMaxChannels>& values) {
-  Channels channels;
+SampledSpectrum to_channels(const std::array<double, kMaxChannels>& values) {
+  SampledSpectrum channels;
   for (int i = 0; i < kMaxChannels; ++i) channels[i] = static_cast<float>(values[i]);
   return channels;
 }
 
-Channels seen_rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
-                     const RgbColorSpace& space) {
-  if (role == SpectrumRole::kIndex) return Channels(static_cast<float>(spectrum(kSodiumLine)));
+SampledSpectrum seen_rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
+                            const RgbColorSpace& space) {
+  if (role == SpectrumRole::kIndex)
+    return SampledSpectrum(static_cast<float>(spectrum(kSodiumLine)));
   if (std::holds_alternative<ConstantSpectrum>(spectrum.kind()) &&
       role == SpectrumRole::kReflectance) {
     const auto value = static_cast<float>(spectrum(kSodiumLine));
@@ -48,8 +49,8 @@ bool same_white(const RgbColorSpace& a, const RgbColorSpace& b) {
 
 /// What a spectrum is in R, G, B: the colour that it was made of, if it was made of one. Only its
 /// spectrum says what a surface looks like under another white.
-Channels rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
-                const RgbColorSpace& space) {
+SampledSpectrum rgb_of(const SpectralDistribution& spectrum, SpectrumRole role,
+                       const RgbColorSpace& space) {
   const auto* const made = std::get_if<RgbSpectrum>(&spectrum.kind());
   const bool light = role == SpectrumRole::kIlluminant;
   if (made == nullptr || role == SpectrumRole::kIndex || made->is_light() != light) {

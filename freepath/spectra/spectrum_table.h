@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/spectra/light_table.h"
 #include "freepath/spectra/rgb_color_space.h"
@@ -36,16 +36,16 @@ using PathWavelengths = Wavelengths<kMaxChannels>;
 /// spectrum is evaluated once for all paths that share wavelengths.
 class SpectrumValues {
  public:
-  const Channels& operator[](SpectrumId id) const { return values_[id.index]; }
+  const SampledSpectrum& operator[](SpectrumId id) const { return values_[id.index]; }
 
   /// A colour of a texture (sRGB's primaries, linear) as a reflectance or coefficient: a mixture of
   /// three basis spectra, whose colour comes back exactly. One multiplication per channel and
   /// component, where the smooth fit (RgbSpectrum) would take a table of all three dimensions.
-  Channels reflectance(const Vec3f& rgb) const { return mix(reflectance_basis_, rgb); }
+  SampledSpectrum reflectance(const Vec3f& rgb) const { return mix(reflectance_basis_, rgb); }
   /// A colour of an image (sRGB's primaries, linear) as emitted light: what RgbSpectrum::illuminant
   /// is of it, or in R, G, B the colour itself or what is seen of that spectrum.
   /// @param rgb finite and not negative
-  Channels illuminant(const Vec3f& rgb) const {
+  SampledSpectrum illuminant(const Vec3f& rgb) const {
     if (keeps_colours_) return {rgb.x, rgb.y, rgb.z};
     if (!lights_) return mix(reflectance_basis_, rgb);
     if (!is_spectral()) return mix(reflectance_basis_, lights_->seen(rgb));
@@ -59,7 +59,7 @@ class SpectrumValues {
 
   /// The colour of what a path carries, R, G, B of the table's space: an unbiased estimate for
   /// wavelengths that are drawn as sample_wavelengths does.
-  Vec3f to_rgb(const Channels& radiance) const {
+  Vec3f to_rgb(const SampledSpectrum& radiance) const {
     Vec3f rgb(0);
     for (int i = 0; i < kMaxChannels; ++i) rgb += to_rgb_[i] * radiance[i];
     return rgb;
@@ -76,21 +76,21 @@ class SpectrumValues {
  private:
   friend class SpectrumTable;
 
-  static Channels mix(const std::array<Channels, 3>& basis, const Vec3f& rgb) {
+  static SampledSpectrum mix(const std::array<SampledSpectrum, 3>& basis, const Vec3f& rgb) {
     return basis[0] * rgb.x + basis[1] * rgb.y + basis[2] * rgb.z;
   }
-  Channels light(const LightTable::Light& light) const {
-    Channels result;
+  SampledSpectrum light(const LightTable::Light& light) const {
+    SampledSpectrum result;
     for (int i = 0; i < channels_; ++i) result[i] = light(coordinates_[i]);
     return result * white_;
   }
 
-  std::vector<Channels> values_;
-  std::array<Channels, 3> reflectance_basis_;
+  std::vector<SampledSpectrum> values_;
+  std::array<SampledSpectrum, 3> reflectance_basis_;
   bool keeps_colours_ = false;          // whether colours of images are those of the channels
   const LightTable* lights_ = nullptr;  // null where colours stay as they are given
-  Channels white_;                      // of the spectra of lights
-  Channels coordinates_;                // u of the wavelengths, as SigmoidPolynomial has it
+  SampledSpectrum white_;               // of the spectra of lights
+  SampledSpectrum coordinates_;         // u of the wavelengths, as SigmoidPolynomial has it
   std::array<Vec3f, kMaxChannels> to_rgb_;
   std::array<double, kMaxChannels> wavelengths_{};
   int channels_ = 3;
@@ -123,8 +123,8 @@ class SpectrumTable {
   struct Entry {
     SpectralDistribution spectrum;
     SpectrumRole role = SpectrumRole::kReflectance;
-    Channels rgb;   ///< As given.
-    Channels seen;  ///< As the spectrum is seen.
+    SampledSpectrum rgb;   ///< As given.
+    SampledSpectrum seen;  ///< As the spectrum is seen.
   };
 
   const RgbColorSpace& space_;

@@ -39,21 +39,21 @@ RenderSettings settings_of(const ComparisonSettings& settings, const Configurati
 }
 
 /// Renders a pixel, so that what can't work is known at once.
-void try_configuration(const Subject& subject, const ComparisonSettings& settings,
+void try_configuration(const RenderTarget& target, const ComparisonSettings& settings,
                        const Configuration& configuration) {
   RenderSettings render = settings_of(settings, configuration);
   render.samples = 1;
   render.crop = Crop{.x0 = 0, .y0 = 0, .x1 = 1, .y1 = 1};
-  subject.render(render, {});
+  target.render(render, {});
 }
 
 /// The configurations as they can be run.
-std::vector<Configuration> tried_configurations(const Subject& subject,
+std::vector<Configuration> tried_configurations(const RenderTarget& target,
                                                 const ComparisonSettings& settings) {
   std::vector<Configuration> configurations = settings.configurations;
   for (Configuration& configuration : configurations) {
     try {
-      try_configuration(subject, settings, configuration);
+      try_configuration(target, settings, configuration);
     } catch (const Error& error) {
       const std::string reason = error.what();
       if (!settings.may_interpolate || configuration.interpolation != Interpolation::kStochastic) {
@@ -61,7 +61,7 @@ std::vector<Configuration> tried_configurations(const Subject& subject,
       }
       configuration.interpolation = Interpolation::kTrilinear;
       try {
-        try_configuration(subject, settings, configuration);
+        try_configuration(target, settings, configuration);
       } catch (const Error&) {
         fail("{}: {}", configuration.tracker, reason);
       }
@@ -73,12 +73,12 @@ std::vector<Configuration> tried_configurations(const Subject& subject,
 /// Runs, and what they leave behind until all are done.
 class Experiment {
  public:
-  Experiment(const Subject& subject, const ComparisonSettings& settings,
+  Experiment(const RenderTarget& target, const ComparisonSettings& settings,
              const ComparisonProgressFunction& progress)
-      : subject_(subject), settings_(settings), progress_(progress) {}
+      : target_(target), settings_(settings), progress_(progress) {}
 
   Comparison run() {
-    configurations_ = tried_configurations(subject_, settings_);
+    configurations_ = tried_configurations(target_, settings_);
     name_configurations();
     get_references();
     for (int repeat = 0; repeat < settings_.repeats; ++repeat) {
@@ -143,7 +143,7 @@ class Experiment {
     return kGuess;
   }
 
-  const Subject& subject_;
+  const RenderTarget& target_;
   const ComparisonSettings& settings_;
   const ComparisonProgressFunction& progress_;
   std::vector<Configuration> configurations_;
@@ -208,7 +208,7 @@ void Experiment::get_references() {
             settings_.reference.file);
       }
       Reference reference =
-          get_reference(subject_, settings_.reference, standard, settings_.render,
+          get_reference(target_, settings_.reference, standard, settings_.render,
                         progress_of("reference", 0, share, settings_.reference.time));
       if (reference.estimates.mean.empty()) throw Interrupted("interrupted: nothing is written");
       result_.references.push_back(std::move(reference));
@@ -254,13 +254,13 @@ void Experiment::run_once(std::size_t which, int repeat) {
   render.on_pass = watcher(which, watch, clock);
   const double cpu_before = process_cpu_seconds();
   const RenderResult rendered =
-      subject_.render(render, progress_of(step, begin, (1 - share) / runs, render.time_limit));
+      target_.render(render, progress_of(step, begin, (1 - share) / runs, render.time_limit));
   ComparisonRun run;
   run.cpu_seconds = process_cpu_seconds() - cpu_before - watch.cpu_seconds;
   if (rendered.interrupted) throw Interrupted("interrupted: nothing is written");
   run.seconds = rendered.seconds - watch.seconds;
   run.samples = rendered.samples;
-  run.camera_samples = uint64_t{rendered.samples} * subject_.width * subject_.height;
+  run.camera_samples = uint64_t{rendered.samples} * target_.width * target_.height;
   run.overflows = rendered.counts.overflows;
   run.free_paths = rendered.counts.free_paths;
   run.shadow_rays = rendered.counts.shadow_rays;
@@ -343,7 +343,7 @@ Interval ConfigurationResult::over_runs(
   return mean_interval(values);
 }
 
-Comparison compare(const Subject& subject, const ComparisonSettings& settings,
+Comparison compare(const RenderTarget& target, const ComparisonSettings& settings,
                    const ComparisonProgressFunction& progress) {
   if (settings.configurations.empty()) fail("nothing to compare: no methods are given");
   if (settings.repeats < 1) fail("nothing to compare: {}", counted(settings.repeats, "repeat"));
@@ -354,7 +354,7 @@ Comparison compare(const Subject& subject, const ComparisonSettings& settings,
     fail("{} for {}: each needs two at least, to know its variance",
          counted(settings.samples, "sample"), counted(settings.repeats, "repeat"));
   }
-  return Experiment(subject, settings, progress).run();
+  return Experiment(target, settings, progress).run();
 }
 
 }  // namespace freepath

@@ -12,7 +12,7 @@
 #include "freepath/study/interval.h"
 #include "freepath/study/pixel_estimates.h"
 #include "freepath/study/reference.h"
-#include "freepath/study/subject.h"
+#include "freepath/study/render_target.h"
 
 namespace freepath {
 
@@ -118,8 +118,8 @@ class Interrupted : public Error {
 ///
 /// MSE is stated less the variance of the reference. The intervals take rounds for independent.
 /// @throws Error for methods that do not exist or refuse the medium, before anything long is run,
-///   naming them; as Subject::render; Interrupted
-Comparison compare(const Subject& subject, const ComparisonSettings& settings,
+///   naming them; as RenderTarget::render; Interrupted
+Comparison compare(const RenderTarget& target, const ComparisonSettings& settings,
                    const ComparisonProgressFunction& progress = {});
 
 }  // namespace freepath

@@ -80,7 +80,7 @@ std::string csv_of(const Interval& interval) {
 }  // namespace
 
 std::string json_of(const Comparison& comparison, const ReportContext& context) {
-  Json json = {{"subject", context.subject},
+  Json json = {{"target", context.target},
                {"command", context.command},
                {"version", version()},
                {"machine", context.machine},

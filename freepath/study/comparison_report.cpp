@@ -295,7 +295,7 @@ std::vector<std::string> findings_of(const Comparison& comparison) {
 }
 
 Page page_of(const Comparison& comparison, const ReportContext& context) {
-  Page page{.title = "Estimators on " + context.subject, .subtitle = {}, .blocks = {}};
+  Page page{.title = "Estimators on " + context.target, .subtitle = {}, .blocks = {}};
   page.subtitle = fmt::format("freepath compare, {}, {}", context.date, context.machine);
   page.blocks.emplace_back(PageHeading{"What came out"});
   for (const std::string& finding : findings_of(comparison)) {

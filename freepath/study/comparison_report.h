@@ -11,7 +11,7 @@ namespace freepath {
 
 /// What a report tells besides what was measured.
 struct ReportContext {
-  std::string subject;  ///< "cloud.vdb"
+  std::string target;   ///< "cloud.vdb"
   std::string command;  ///< That makes the same report, as typed.
   std::string machine;  ///< One line: processor, threads, instructions.
   std::string date;     ///< As in ISO 8601.

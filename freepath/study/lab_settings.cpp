@@ -24,9 +24,9 @@ constexpr int kMargin = kLabCell - 2;
 /// The ray is in the middle of a cell, off the faces of voxels.
 constexpr double kRayVoxel = 8.3;
 
-const Spectrum kNone(0.0F);
-const Spectrum kGreyAbsorption(0.6F);
-const Spectrum kGreyScattering(2.4F);
+const Rgb kNone(0.0F);
+const Rgb kGreyAbsorption(0.6F);
+const Rgb kGreyScattering(2.4F);
 
 /// Wide enough in y and z for super-voxels around the ray to be full of it.
 std::shared_ptr<const Field> make_field(const Shape& shape) {
@@ -58,8 +58,8 @@ std::shared_ptr<const Field> make_field(const Shape& shape) {
   return field;
 }
 
-Component component(const Shape& shape, const Spectrum& sigma_a, const Spectrum& sigma_s,
-                    const Spectrum& emission = kNone) {
+Component component(const Shape& shape, const Rgb& sigma_a, const Rgb& sigma_s,
+                    const Rgb& emission = kNone) {
   Component result;
   result.density = make_field(shape);
   result.sigma_a = sigma_a;
@@ -110,17 +110,15 @@ double fixture_shape(double x) {
 std::vector<Component> fixture_components() {
   const auto r = fixture_shape;
   return {
-      component(r, kNone, Spectrum(6, 0, 1)),
-      component([=](double x) { return r(x) * r(x); }, kNone, Spectrum(0, 2.1F, 0)),
-      component([](double) { return 1.0; }, kNone, Spectrum(0, 0.9F, 0)),
-      component([=](double x) { return r(x) * (1 - x); }, Spectrum(0.5F, 1.5F, 0), kNone,
-                Spectrum(1, 2, 0)),
-      component([=](double x) { return r(x) * x; }, Spectrum(0.5F, 1.5F, 0), kNone,
-                Spectrum(2, 1, 0)),
-      component([=](double x) { return std::sqrt(r(x)) * (1 - x * x); }, Spectrum(0, 0, 3), kNone,
-                Spectrum(0, 0, 0.5F)),
-      component([=](double x) { return std::sqrt(r(x)) * x * x; }, Spectrum(0, 0, 3), kNone,
-                Spectrum(0, 0, 1.5F)),
+      component(r, kNone, Rgb(6, 0, 1)),
+      component([=](double x) { return r(x) * r(x); }, kNone, Rgb(0, 2.1F, 0)),
+      component([](double) { return 1.0; }, kNone, Rgb(0, 0.9F, 0)),
+      component([=](double x) { return r(x) * (1 - x); }, Rgb(0.5F, 1.5F, 0), kNone, Rgb(1, 2, 0)),
+      component([=](double x) { return r(x) * x; }, Rgb(0.5F, 1.5F, 0), kNone, Rgb(2, 1, 0)),
+      component([=](double x) { return std::sqrt(r(x)) * (1 - x * x); }, Rgb(0, 0, 3), kNone,
+                Rgb(0, 0, 0.5F)),
+      component([=](double x) { return std::sqrt(r(x)) * x * x; }, Rgb(0, 0, 3), kNone,
+                Rgb(0, 0, 1.5F)),
   };
 }
 
@@ -147,15 +145,14 @@ std::vector<Component> grey_noise() { return grey(noise); }
 
 /// One density for all channels, and in each channel one albedo: 0.95, 0.98 and 0.9.
 std::vector<Component> chromatic_ramp() {
-  return {component([](double x) { return 2 * x; }, Spectrum(0.3F, 0.04F, 0.075F),
-                    Spectrum(5.7F, 1.96F, 0.675F))};
+  return {component([](double x) { return 2 * x; }, Rgb(0.3F, 0.04F, 0.075F),
+                    Rgb(5.7F, 1.96F, 0.675F))};
 }
 /// The lump is thick in red, what is around it in blue.
 std::vector<Component> chromatic_spike() {
-  return {
-      component([](double) { return 1.0; }, Spectrum(0.1F, 0.2F, 0.3F), Spectrum(0.3F, 0.9F, 2.7F)),
-      component([](double x) { return spike(x, 0, 0.5); }, Spectrum(0.6F, 0.3F, 0.1F),
-                Spectrum(6.0F, 1.5F, 0.3F))};
+  return {component([](double) { return 1.0; }, Rgb(0.1F, 0.2F, 0.3F), Rgb(0.3F, 0.9F, 2.7F)),
+          component([](double x) { return spike(x, 0, 0.5); }, Rgb(0.6F, 0.3F, 0.1F),
+                    Rgb(6.0F, 1.5F, 0.3F))};
 }
 
 struct Entry {

@@ -45,12 +45,12 @@ struct PilotTally {
 
 /// One round; an Error becomes the refusal.
 /// @return false if the caller wished to stop
-bool run_round(const Subject& subject, const PilotSettings& settings, uint64_t seed,
+bool run_round(const RenderTarget& target, const PilotSettings& settings, uint64_t seed,
                const ProgressFunction& progress, PilotResult& result, PilotTally& tally) {
   const double cpu_before = settings.cpu_clock();
   try {
     const RenderResult rendered =
-        subject.render(settings_of(settings, result.candidate, seed), progress);
+        target.render(settings_of(settings, result.candidate, seed), progress);
     if (rendered.interrupted) return false;
     // Of a small picture's passes some threads go without work at the end, of a large one's not.
     const double cpu_seconds = settings.cpu_clock() - cpu_before;
@@ -78,7 +78,7 @@ std::optional<Interval> PilotResult::seconds_to(double noise) const {
   return seconds;
 }
 
-std::vector<PilotResult> run_pilots(const Subject& subject,
+std::vector<PilotResult> run_pilots(const RenderTarget& target,
                                     const std::vector<PilotCandidate>& candidates,
                                     const PilotSettings& settings,
                                     const std::function<bool(double)>& progress) {
@@ -99,7 +99,7 @@ std::vector<PilotResult> run_pilots(const Subject& subject,
       const ProgressFunction watch = [&](const RenderProgress&) {
         return !progress || progress(fraction);
       };
-      const Subject& own = candidates[i].subject != nullptr ? *candidates[i].subject : subject;
+      const RenderTarget& own = candidates[i].target != nullptr ? *candidates[i].target : target;
       if (!run_round(own, settings, run_seed(settings.seed, i, round), watch, results[i],
                      tallies[i])) {
         fail("interrupted");

@@ -8,16 +8,16 @@
 
 #include "freepath/study/interval.h"
 #include "freepath/study/process_time.h"
-#include "freepath/study/subject.h"
+#include "freepath/study/render_target.h"
 
 namespace freepath {
 
-/// A way to render the subject that a pilot tries.
+/// A way to render the target that a pilot tries.
 struct PilotCandidate {
   std::string name;
   Configuration configuration;
-  /// Another subject than the plan's, such as one with other super-voxels; null: that.
-  const Subject* subject = nullptr;
+  /// Another target than the plan's, such as one with other super-voxels; null: that.
+  const RenderTarget* target = nullptr;
 };
 
 struct PilotSettings {
@@ -49,7 +49,7 @@ struct PilotResult {
 
 /// Runs all candidates, round after round.
 /// @return in their order
-std::vector<PilotResult> run_pilots(const Subject& subject,
+std::vector<PilotResult> run_pilots(const RenderTarget& target,
                                     const std::vector<PilotCandidate>& candidates,
                                     const PilotSettings& settings,
                                     const std::function<bool(double fraction)>& progress = {});

@@ -21,16 +21,16 @@ namespace fs = std::filesystem;
 /// Apart from those of the runs, whatever their seed.
 constexpr uint64_t kReferenceSeed = 0x9E3779B97F4A7C15U;
 
-Reference read_reference(const std::string& file, const Subject& subject) {
+Reference read_reference(const std::string& file, const RenderTarget& target) {
   Reference reference;
   const Image image = read_image(file);
-  if (image.width != subject.width || image.height != subject.height) {
+  if (image.width != target.width || image.height != target.height) {
     fail("{}: the reference has {}x{} pixels and the pictures have {}x{}; give --size {}x{}", file,
-         image.width, image.height, subject.width, subject.height, image.width, image.height);
+         image.width, image.height, target.width, target.height, image.width, image.height);
   }
   reference.estimates = estimates_of(image, file, reference.variance_known);
   if (!are_same(reference.estimates.chromaticities.value_or(RgbChromaticities()),
-                subject.chromaticities.value_or(RgbChromaticities()))) {
+                target.chromaticities.value_or(RgbChromaticities()))) {
     fail("{}: the reference and the pictures have R, G and B of different colour spaces", file);
   }
   const auto& samples = reference.estimates.samples;
@@ -53,7 +53,7 @@ Reference read_reference(const std::string& file, const Subject& subject) {
 }
 
 /// What tells one reference from all others.
-std::string key_of(const Subject& subject, const ReferencePlan& plan,
+std::string key_of(const RenderTarget& target, const ReferencePlan& plan,
                    const Configuration& configuration) {
   const bool nearest = configuration.interpolation == Interpolation::kNearest;
   ContentDigest digest;
@@ -62,15 +62,15 @@ std::string key_of(const Subject& subject, const ReferencePlan& plan,
   constexpr const char* kThisProgram = "/proc/self/exe";
   std::error_code ignored;
   if (fs::exists(kThisProgram, ignored)) digest.add_file(kThisProgram);
-  digest.add(subject.digest);
-  digest.add(fmt::format("{}x{}", subject.width, subject.height));
+  digest.add(target.digest);
+  digest.add(fmt::format("{}x{}", target.width, target.height));
   digest.add(nearest ? "nearest" : "trilinear");
   digest.add(fmt::format("{} {} {} {}", configuration.tracker, configuration.transmittance,
                          plan.time, plan.samples));
   return digest.hex();
 }
 
-Reference make_reference(const Subject& subject, const ReferencePlan& plan,
+Reference make_reference(const RenderTarget& target, const ReferencePlan& plan,
                          const Configuration& configuration, RenderSettings settings,
                          const ProgressFunction& progress) {
   settings.samples = plan.samples;
@@ -81,7 +81,7 @@ Reference make_reference(const Subject& subject, const ReferencePlan& plan,
   settings.walk.transmittance = configuration.transmittance;
   settings.walk.interpolation = configuration.interpolation;
   settings.walk.seed = kReferenceSeed;
-  const auto& render = subject.render_reference ? subject.render_reference : subject.render;
+  const auto& render = target.render_reference ? target.render_reference : target.render;
   const RenderResult result = render(settings, progress);
   if (result.interrupted) return {};
   Reference reference{.estimates = estimates_of(result.film)};
@@ -110,17 +110,17 @@ std::string standard_reference_cache() {
   return {};
 }
 
-Reference get_reference(const Subject& subject, const ReferencePlan& plan,
+Reference get_reference(const RenderTarget& target, const ReferencePlan& plan,
                         const Configuration& configuration, RenderSettings settings,
                         const ProgressFunction& progress) {
-  if (!plan.file.empty()) return read_reference(plan.file, subject);
+  if (!plan.file.empty()) return read_reference(plan.file, target);
   std::string cached;
   if (!plan.cache.empty()) {
-    cached = (fs::path(plan.cache) / (key_of(subject, plan, configuration) + ".exr")).string();
+    cached = (fs::path(plan.cache) / (key_of(target, plan, configuration) + ".exr")).string();
     std::error_code ignored;
     if (fs::exists(cached, ignored)) {
       try {
-        Reference reference = read_reference(cached, subject);
+        Reference reference = read_reference(cached, target);
         reference.origin = "found in " + cached;
         return reference;
       } catch (const Error&) {
@@ -128,7 +128,7 @@ Reference get_reference(const Subject& subject, const ReferencePlan& plan,
       }
     }
   }
-  Reference reference = make_reference(subject, plan, configuration, std::move(settings), progress);
+  Reference reference = make_reference(target, plan, configuration, std::move(settings), progress);
   if (!cached.empty() && !reference.estimates.mean.empty()) {
     try {
       std::error_code ignored;

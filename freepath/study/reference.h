@@ -5,7 +5,7 @@
 #include <string>
 
 #include "freepath/study/pixel_estimates.h"
-#include "freepath/study/subject.h"
+#include "freepath/study/render_target.h"
 
 namespace freepath {
 
@@ -28,12 +28,12 @@ struct Reference {
 /// ~/.cache; empty where there is neither.
 std::string standard_reference_cache();
 
-/// Reads, finds or makes the reference of a subject.
+/// Reads, finds or makes the reference of a target.
 /// @param configuration what to make it with; of its interpolation that alone matters here whose
 ///   field the reference shows
 /// @param settings of the rendering; samples, time and methods are those of the plan
-/// @throws Error for a file of another size or that can't be read; as Subject::render
-Reference get_reference(const Subject& subject, const ReferencePlan& plan,
+/// @throws Error for a file of another size or that can't be read; as RenderTarget::render
+Reference get_reference(const RenderTarget& target, const ReferencePlan& plan,
                         const Configuration& configuration, RenderSettings settings,
                         const ProgressFunction& progress);
 

@@ -41,7 +41,7 @@ void set_option(Method& method, const MethodInfo& info, std::string_view assignm
   }
   if (equals == std::string_view::npos) {
     fail("option '{}' of '{}' needs a value: {}:{}={}", name, info.name, info.name, name,
-         found->standard);
+         found->default_value);
   }
   const std::string_view text = assignment.substr(equals + 1);
   float& target = method.options[found - info.options.begin()];
@@ -78,7 +78,7 @@ Method parse_method(std::string_view text, std::span<const MethodInfo> known) {
   Method method;
   method.name = info.name;
   for (std::size_t i = 0; i < info.options.size(); ++i) {
-    method.options[i] = info.options[i].standard;
+    method.options[i] = info.options[i].default_value;
   }
   if (colon == std::string_view::npos) return method;
   std::string_view rest = text.substr(colon + 1);
@@ -96,7 +96,7 @@ std::string to_string(const Method& method, std::span<const MethodInfo> known) {
   std::string text = method.name;
   char separator = ':';
   for (std::size_t i = 0; i < info.options.size(); ++i) {
-    if (method.options[i] == info.options[i].standard) continue;
+    if (method.options[i] == info.options[i].default_value) continue;
     const MethodOption& option = info.options[i];
     const float value = method.options[i];
     text += option.choices.empty() ? fmt::format("{}{}={}", separator, option.name, value)

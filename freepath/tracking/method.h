@@ -12,7 +12,7 @@ namespace freepath {
 /// One option of a method: a number, or one of some words.
 struct MethodOption {
   std::string_view name;
-  float standard = 0;  ///< Value when nothing is said.
+  float default_value = 0;  ///< Value when nothing is said.
   float minimum = 0;
   float maximum = 0;
   std::string_view meaning;

@@ -83,7 +83,7 @@ HWY_INLINE VecF with_all_digits(VecU low, MaskF lanes, const Second& second) {
 template <class Second>
 HWY_INLINE VecF uniform_lanes(VecU bits, MaskF lanes, const Second& second) {
   const VecF whole = with_all_digits(hn::ShiftRight<1>(bits), lanes, second);
-  return hn::Min(hn::Mul(whole, set(0x1p-31F)), set(kBelowOne));
+  return hn::Min(hn::Mul(whole, set(0x1p-31F)), set(kOneMinusEpsilon));
 }
 
 /// Exponential with mean 1, as exponential_from_words(), in the lanes of the mask.
@@ -178,7 +178,8 @@ struct RandomPlace {
     }
     const VecF width = hn::IfThenElse(low, smaller, hn::Max(part, rest));
     const MaskF some = hn::Gt(width, hn::Zero(kFloat));
-    uniform = hn::Min(hn::Div(above, hn::IfThenElse(some, width, set(1.0F))), set(kBelowOne));
+    uniform =
+        hn::Min(hn::Div(above, hn::IfThenElse(some, width, set(1.0F))), set(kOneMinusEpsilon));
     return hn::Not(hn::Xor(low, hn::Le(part, rest)));
   }
 };

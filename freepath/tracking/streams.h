@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/tracking/statistics.h"
 
 namespace freepath {

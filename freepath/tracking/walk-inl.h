@@ -23,8 +23,8 @@
 
 #include "freepath/base/lanes-inl.h"
 #include "freepath/tracking/collision-inl.h"
+#include "freepath/tracking/lane_refill-inl.h"
 #include "freepath/tracking/random-inl.h"
-#include "freepath/tracking/ray_dealer-inl.h"
 #include "freepath/tracking/streams.h"
 #include "freepath/tracking/walk_group-inl.h"
 #include "freepath/tracking/walk_tally-inl.h"
@@ -57,14 +57,14 @@ class Walk {
         seed_(seed),
         ray_count_(rays.size()),
         tally_(statistics),
-        dealer_(tracker, segments, medium, seed, rays, entry, flights) {}
+        refill_(tracker, segments, medium, seed, rays, entry, flights) {}
 
   void run() {
     HWY_ALIGN_MAX Team teams[2];
     for (Team& team : teams) {
       for (Group& group : team) {
         group.clear(medium_);
-        dealer_.refill(group);
+        refill_.refill(group);
       }
     }
     // While one team computes, the memory that the other has asked for arrives.
@@ -91,7 +91,7 @@ class Walk {
       if (group.looking != 0) collide(group);
     }
     for (Group& group : team) {
-      dealer_.retire(group);
+      refill_.retire(group);
       alive |= group.alive != 0;
     }
     if (!alive) return false;
@@ -389,7 +389,7 @@ class Walk {
   uint64_t seed_;
   std::size_t ray_count_;
   WalkTally<N> tally_;
-  RayDealer<N, Tracker, Segments, Medium, Entry> dealer_;
+  LaneRefill<N, Tracker, Segments, Medium, Entry> refill_;
 };
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/media/medium_view.h"
 #include "freepath/tracking/method.h"
 #include "freepath/tracking/streams.h"

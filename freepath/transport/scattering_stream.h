@@ -38,7 +38,7 @@ struct ScatteringStream {
   std::array<Row<float>, 3> direction{};  ///< Of travel, before [world].
   // Of the light that was drawn, where one was.
   std::array<Row<float>, 3> to_light{};  ///< Direction towards it [world].
-  Row<float> light_pdf{};                ///< LightDraw::pdf.
+  Row<float> light_pdf{};                ///< LightSample::pdf.
   Row<float> light_found{};  ///< 1 where paths find it by chance too, else 0: multiple importance.
   /// What it would bring unshadowed if the phase function were 1 and no path found it; see
   /// ShadowRoulette::least. Huge where its shadow ray does not play.

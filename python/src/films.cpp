@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 #include "freepath/paths/film_merge.h"
 #include "python/src/bindings.h"
 #include "python/src/interruptible.h"
@@ -51,7 +51,7 @@ void save_film(const PythonFilm& film, const std::string& path) {
     fail("'{}' has not the extension of a film, {}", path, kFilmExtension);
   }
   run_interruptibly([&](const std::atomic<bool>& /*stop*/) {
-    AsideFile file(path);
+    AtomicFile file(path);
     write_film(file, film.header, *film.film);
   });
 }

@@ -124,7 +124,7 @@ nb::dict flux(const PythonMedium& medium, const FluxOptions& options) {
     settings.walk.tracker = settle_tracker(settings.walk.tracker, *volumes.medium).tracker;
     std::optional<Ground> ground;
     if (options.ground_albedo) {
-      ground = Ground{Spectrum(*options.ground_albedo), options.ground_height, up};
+      ground = Ground{Rgb(*options.ground_albedo), options.ground_height, up};
     }
     FluxScene scene = make_flux_scene(volumes, up, ground, settings.walk.interpolation);
     if (options.columns) scene.meter.counts = *options.columns;

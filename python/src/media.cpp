@@ -81,9 +81,9 @@ using ComponentParts =
 
 /// What stands for the values of any number of channels where R, G and B are wanted: bounds of
 /// super-voxels are chosen by the largest.
-Spectrum spectrum_of(const Values& values) {
+Rgb spectrum_of(const Values& values) {
   if (values.size() == kChannels) return {values[0], values[1], values[2]};
-  return Spectrum(*std::max_element(values.begin(), values.end()));
+  return Rgb(*std::max_element(values.begin(), values.end()));
 }
 
 PythonMedium make_python_medium(const std::vector<ComponentParts>& parts, int super_voxel) {

@@ -24,11 +24,11 @@ nb::dict option_dict(const MethodOption& option) {
   entry["name"] = option.name;
   entry["meaning"] = option.meaning;
   if (option.choices.empty()) {
-    entry["default"] = option.standard;
+    entry["default"] = option.default_value;
     entry["minimum"] = option.minimum;
     entry["maximum"] = option.maximum;
   } else {
-    entry["default"] = option.choices[static_cast<std::size_t>(option.standard)];
+    entry["default"] = option.choices[static_cast<std::size_t>(option.default_value)];
     entry["choices"] = std::vector<std::string_view>(option.choices.begin(), option.choices.end());
   }
   return entry;

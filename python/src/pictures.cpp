@@ -12,7 +12,7 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/version.h"
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 #include "python/src/arrays.h"
 #include "python/src/bindings.h"
 #include "python/src/counts.h"
@@ -101,7 +101,7 @@ void bind_pictures(nb::module_& module) {
              const std::string& view) {
             const PictureLook look = look_of(exposure, view);
             run_interruptibly([&](const std::atomic<bool>& /*stop*/) {
-              AsideFile file(path);
+              AtomicFile file(path);
               write_image(file, self.image, look);
             });
           },

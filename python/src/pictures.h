@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "freepath/io/atomic_image.h"
 #include "freepath/io/image.h"
-#include "freepath/io/image_aside.h"
 #include "freepath/paths/film_file.h"
 
 namespace freepath::python {

@@ -37,7 +37,7 @@ using Triple = std::array<double, 3>;
 using ScenePointer = std::shared_ptr<PythonScene>;
 using SceneWithWarnings = std::pair<ScenePointer, std::vector<std::string>>;
 
-Spectrum spectrum_of(const Triple& rgb) {
+Rgb spectrum_of(const Triple& rgb) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 Vec3d vector_of(const Triple& point) { return {point[0], point[1], point[2]}; }
@@ -135,7 +135,7 @@ BuildOptions build_options(const SceneOptions& options, std::vector<std::string>
   }
   if (options.environment || options.has_sun) {
     LightOptions lights = options.lights();
-    if (!options.environment) lights.environment = Spectrum(0.0F);  // no sky is made in vain
+    if (!options.environment) lights.environment = Rgb(0.0F);  // no sky is made in vain
     build.surroundings = make_surroundings(lights, options.up_axis(), &warnings);
     if (!options.environment) build.surroundings.environment.reset();
   }

@@ -190,7 +190,7 @@ TEST_F(ConvertTest, ASparseGridThatWouldFillTheDiskIsNoImage) {
 RunningStatistics transmittance(const LoadedField& loaded, float sigma, const Vec3d& from,
                                 const Vec3d& to) {
   Component component{.density = std::make_shared<Field>(loaded.field)};
-  component.sigma_s = Spectrum(sigma);
+  component.sigma_s = Rgb(sigma);
   const Medium medium({component});
   RayStream rays;
   constexpr std::size_t kRays = 200'000;

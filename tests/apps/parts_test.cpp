@@ -83,24 +83,24 @@ class RandomParts {
 
 TEST_F(PartsTest, AnyPartsMergeToTheBitsOfOneProcess) {
   write_scene();
-  struct Subject {
+  struct RenderTarget {
     std::string render;
     uint32_t samples;
   };
-  const std::vector<Subject> subjects = {
+  const std::vector<RenderTarget> targets = {
       {"render ball.vdb --size 24x18 --sun 30,60 --albedo 0.9 --g 0.6 --layers all", 13},
       {"render room.pbrt --color rgb --layers all", 17},
       {"render room.pbrt --color spectral --layers default,halves", 17}};
-  for (const Subject& subject : subjects) {
-    expect_done(subject.render + " --spp " + std::to_string(subject.samples) +
+  for (const RenderTarget& target : targets) {
+    expect_done(target.render + " --spp " + std::to_string(target.samples) +
                 " -o whole.exr -o whole.film");
     for (int trial = 0; trial < trials(3); ++trial) {
       const std::vector<std::string> parts =
-          RandomParts(static_cast<uint32_t>(trial), subject.samples).options();
+          RandomParts(static_cast<uint32_t>(trial), target.samples).options();
       std::string merge = "merge";
       for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = "part" + std::to_string(i) + ".film";
-        expect_done(subject.render + " " + parts[i] + " -o " + name);
+        expect_done(target.render + " " + parts[i] + " -o " + name);
         merge += " " + name;
       }
       if (parts.size() == 64) merge += " --partial";  // some were left out

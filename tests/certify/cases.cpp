@@ -29,7 +29,7 @@ const std::map<std::string_view, std::vector<std::string>>& certified_values() {
 std::vector<std::string> values_of(const MethodOption& option) {
   std::vector<std::string> values;
   for (std::size_t i = 0; i < option.choices.size(); ++i) {
-    if (static_cast<float>(i) != option.standard) values.emplace_back(option.choices[i]);
+    if (static_cast<float>(i) != option.default_value) values.emplace_back(option.choices[i]);
   }
   if (!option.choices.empty()) return values;
   const auto found = certified_values().find(option.name);

@@ -15,18 +15,18 @@ constexpr float kLooseness = 4;
 /// Fewer than in the fixture, whose numbers are not asked for here: regular tracking visits each.
 constexpr int kFixtureVoxels = 256;
 
-const Spectrum kNone(0.0F);
-const Spectrum kGreyAbsorption(0.5F);
-const Spectrum kGreyScattering(1.5F);
+const Rgb kNone(0.0F);
+const Rgb kGreyAbsorption(0.5F);
+const Rgb kGreyScattering(1.5F);
 /// Every channel has another extinction and another albedo.
-const Spectrum kRedAbsorption(0.02F, 0.2F, 1.0F);
-const Spectrum kRedScattering(4.0F, 1.0F, 0.25F);
-const Spectrum kBlueAbsorption(1.5F, 0.3F, 0.0F);
-const Spectrum kBlueScattering(0.0F, 0.6F, 2.5F);
-const Spectrum kEmission(1.0F, 2.0F, 0.5F);
+const Rgb kRedAbsorption(0.02F, 0.2F, 1.0F);
+const Rgb kRedScattering(4.0F, 1.0F, 0.25F);
+const Rgb kBlueAbsorption(1.5F, 0.3F, 0.0F);
+const Rgb kBlueScattering(0.0F, 0.6F, 2.5F);
+const Rgb kEmission(1.0F, 2.0F, 0.5F);
 
-Component make_component(std::shared_ptr<const Field> density, const Spectrum& sigma_a,
-                         const Spectrum& sigma_s, const Spectrum& emission = kEmission) {
+Component make_component(std::shared_ptr<const Field> density, const Rgb& sigma_a,
+                         const Rgb& sigma_s, const Rgb& emission = kEmission) {
   Component component;
   component.density = std::move(density);
   component.sigma_a = sigma_a;
@@ -187,8 +187,8 @@ void add_lines(MediaList& list) {
   list.add("homogeneous, chromatic", {make_component(constant, kRedAbsorption, kRedScattering)},
            along_line());
   list.add("homogeneous, white, without emission",
-           {make_component(constant, kNone, Spectrum(2.0F), kNone)}, along_line());
-  list.add("homogeneous, black", {make_component(constant, Spectrum(1.0F, 2.0F, 3.0F), kNone)},
+           {make_component(constant, kNone, Rgb(2.0F), kNone)}, along_line());
+  list.add("homogeneous, black", {make_component(constant, Rgb(1.0F, 2.0F, 3.0F), kNone)},
            along_line());
   list.add_thick("thickness 0.001", 1e-3, make_component(constant, kRedAbsorption, kRedScattering),
                  along_line());
@@ -223,21 +223,21 @@ void add_volumes(MediaList& list) {
   list.add("tiles", {make_component(tiles(), kGreyAbsorption, kGreyScattering)}, through_tiles());
   list.add("two components",
            {make_component(lumpy_field(0), kRedAbsorption, kRedScattering),
-            make_component(lumpy_field(1), kBlueAbsorption, kBlueScattering, Spectrum(0.3F, 1, 4))},
+            make_component(lumpy_field(1), kBlueAbsorption, kBlueScattering, Rgb(0.3F, 1, 4))},
            through_crooked(0));
   list.add("three components",
            {make_component(lumpy_field(0), kRedAbsorption, kRedScattering),
             make_component(dense_noise(1), kBlueAbsorption, kBlueScattering, kNone),
-            make_component(lumpy_field(2), Spectrum(0.1F), kNone, Spectrum(2.0F))},
+            make_component(lumpy_field(2), Rgb(0.1F), kNone, Rgb(2.0F))},
            through_crooked(2));
   list.add("two transforms",
            {make_component(lumpy_field(0), kRedAbsorption, kRedScattering),
             make_component(turned_noise(), kBlueAbsorption, kBlueScattering)},
            through_crooked(0));
   list.add("RGB density",
-           {make_component(lumpy_field(0), Spectrum(0.5F, 0, 0), Spectrum(1.5F, 0, 0)),
-            make_component(lumpy_field(1), Spectrum(0, 0.5F, 0), Spectrum(0, 1.5F, 0)),
-            make_component(lumpy_field(2), Spectrum(0, 0, 0.5F), Spectrum(0, 0, 1.5F))},
+           {make_component(lumpy_field(0), Rgb(0.5F, 0, 0), Rgb(1.5F, 0, 0)),
+            make_component(lumpy_field(1), Rgb(0, 0.5F, 0), Rgb(0, 1.5F, 0)),
+            make_component(lumpy_field(2), Rgb(0, 0, 0.5F), Rgb(0, 0, 1.5F))},
            through_crooked(0));
 }
 

@@ -51,15 +51,15 @@ FilmMean volume_furnace(uint32_t samples, uint64_t seed) {
   Component fog;
   fog.density = make_field(
       Vec3i(-4), Vec3i(3), [](const Vec3i& p) { return hash_noise(p); }, scale);
-  fog.sigma_a = Spectrum(3.0F);
-  fog.sigma_s = Spectrum(6.0F);
-  fog.emission = Spectrum(1.0F);
+  fog.sigma_a = Rgb(3.0F);
+  fog.sigma_s = Rgb(6.0F);
+  fog.emission = Rgb(1.0F);
   const Medium medium({fog});
   const Camera camera(frame_box(medium.world_bounds(), UpAxis::kY, 25, 1), 8, 8);
   RenderSettings settings;
   settings.samples = samples;
   settings.walk.seed = seed;
-  return mean_of(render(medium, camera, {Spectrum(1.0F)}, settings).film.to_image());
+  return mean_of(render(medium, camera, {Rgb(1.0F)}, settings).film.to_image());
 }
 
 /// In a ball that glows: a sky that is the same everywhere would not be drawn.

@@ -219,7 +219,7 @@ RunningStatistics walk_reference(const std::string& method, bool free_paths, flo
                                  uint64_t paths) {
   Component component;
   component.density = make_field(Vec3i(0), Vec3i(7, 0, 0), [](const Vec3i&) { return 1.0F; });
-  component.sigma_s = Spectrum(0.1F * scale);
+  component.sigma_s = Rgb(0.1F * scale);
   const Medium medium({component});
   WalkSettings settings;
   (free_paths ? settings.tracker : settings.transmittance) = method;

@@ -38,7 +38,7 @@ RunningStatistics estimate(const Planted& factors, uint64_t paths, uint32_t pixe
   const RayMedium::Path path = medium.enter(Vec3d(ray.origin), Vec3d(ray.direction), ray.t_max);
   std::array<float, kMaxMethodOptions> options{};
   for (std::size_t i = 0; i < Method::kInfo.options.size(); ++i) {
-    options[i] = Method::kInfo.options[i].standard;
+    options[i] = Method::kInfo.options[i].default_value;
   }
   Method method(options);
   RunningStatistics statistics;

@@ -23,7 +23,7 @@ Medium endless_noise() {
   // So wide that bounds along the axis know nothing of its surroundings.
   component.density = make_field(Vec3i(0, -16, -16), Vec3i(63, 15, 15),
                                  [](const Vec3i& p) { return 0.2F + 0.8F * hash_noise(p); });
-  component.sigma_s = Spectrum(1.0F);
+  component.sigma_s = Rgb(1.0F);
   return Medium({component});
 }
 
@@ -144,7 +144,7 @@ TEST(PathWeights, OfRefusedMethodsGrow) {
 TEST(PathWeights, GrowthOfWeightedDeltaIsTheMeanSquareOfAFlight) {
   Component component;
   component.density = make_field(Vec3i(0), Vec3i(63, 0, 0), [](const Vec3i&) { return 1.0F; });
-  component.sigma_s = Spectrum(3.0F);
+  component.sigma_s = Rgb(3.0F);
   const Medium medium({component});
   WalkSettings settings;
   settings.tracker = "weighted-delta:rate-scale=0.9";

@@ -127,7 +127,7 @@ TEST(ImageEnvironment, NamesThePixelThatIsNoLight) {
 }
 
 TEST(Sun, RadianceTimesSolidAngleIsItsIrradiance) {
-  const Sun sun({.elevation = 20, .azimuth = 80, .irradiance = Spectrum(3, 2, 1)}, UpAxis::kZ);
+  const Sun sun({.elevation = 20, .azimuth = 80, .irradiance = Rgb(3, 2, 1)}, UpAxis::kZ);
   // The solid angle of a cone, in a form that doesn't cancel.
   const double sine = std::sin(0.5 * 0.2665 * std::numbers::pi / 180);
   EXPECT_NEAR(Sun::solid_angle(), 4 * std::numbers::pi * sine * sine, 1e-6 * Sun::solid_angle());
@@ -171,10 +171,10 @@ TEST(Sun, EverySampledDirectionLiesInTheDisc) {
 }
 
 TEST(Sun, IsDimmerAndRedderWhenItIsLow) {
-  const Spectrum high = direct_sun_irradiance(60, 3);
-  const Spectrum low = direct_sun_irradiance(5, 3);
+  const Rgb high = direct_sun_irradiance(60, 3);
+  const Rgb low = direct_sun_irradiance(5, 3);
   EXPECT_NEAR(luminance(high) / kRadiancePerKilocandela, 100, 20);  // [klx]
-  const Spectrum half = direct_sun_irradiance(45, 3);
+  const Rgb half = direct_sun_irradiance(45, 3);
   EXPECT_NEAR(half.x / half.y, 1, 1e-5F);
   EXPECT_NEAR(half.z / half.y, 1, 1e-5F);
   EXPECT_LT(luminance(low), 0.3F * luminance(high));
@@ -185,7 +185,7 @@ TEST(Sun, IsDimmerAndRedderWhenItIsLow) {
 TEST(Sun, RefusesImpossibleParameters) {
   EXPECT_THROW(Sun({.elevation = 91}, UpAxis::kY), Error);
   EXPECT_THROW(Sun({.turbidity = 1}, UpAxis::kY), Error);
-  EXPECT_THROW(Sun({.irradiance = Spectrum(-1)}, UpAxis::kY), Error);
+  EXPECT_THROW(Sun({.irradiance = Rgb(-1)}, UpAxis::kY), Error);
 }
 
 TEST(DaylightSky, IsBrightestAroundTheSunAndMildBelowTheHorizon) {

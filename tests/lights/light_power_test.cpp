@@ -20,7 +20,7 @@ namespace {
 using testing::spectra;
 using testing::TestSpectra;
 
-double luminance_of_channels(const Channels& c, const SpectrumValues& values) {
+double luminance_of_channels(const SampledSpectrum& c, const SpectrumValues& values) {
   return luminance_weights(spectra().table.space()).dot(Vec3d(values.to_rgb(c)));
 }
 
@@ -39,7 +39,7 @@ double flux_around(const SceneLights& lights, const Vec3f& centre, int size = 15
       const Vec3f d =
           direction_from_octahedral({(static_cast<float>(column) + 0.5F) / static_cast<float>(size),
                                      (static_cast<float>(row) + 0.5F) / static_cast<float>(size)});
-      const LightDraw draw = lights.sample(centre + d, values, 0.5F, 0.5F, 0.5F);
+      const LightSample draw = lights.sample(centre + d, values, 0.5F, 0.5F, 0.5F);
       sum += luminance_of_channels(draw.radiance, values);
     }
   }
@@ -169,7 +169,7 @@ TEST(Photometry, IlluminanceIsThatOfASurface) {
   const TestSpectra& s = spectra();
   const SpectrumValues values = s.table.in_rgb();
   const SceneLights distant = one(DistantLight{.radiance = s.warm, .illuminance = 12.0});
-  const LightDraw draw = distant.sample({0, 0, 0}, values, 0, 0, 0);
+  const LightSample draw = distant.sample({0, 0, 0}, values, 0, 0, 0);
   EXPECT_NEAR(luminance_of_channels(draw.radiance, values), 12, 1e-4);
   EXPECT_EQ(draw.direction, Vec3f(0, 0, -1));
   const auto around = [&](LightDescription light, const Vec3f& up) {

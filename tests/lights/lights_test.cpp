@@ -29,7 +29,7 @@ using testing::rough_image;
 /// A direction drawn towards the lights.
 struct LightSample {
   Vec3f direction;
-  Spectrum radiance;
+  Rgb radiance;
   float pdf;
 };
 
@@ -49,14 +49,14 @@ class Lights {
   }
   float pdf(const Vec3f& direction) const { return evaluate(direction).pdf; }
   LightSample sample(float u0, float u1, float u2) const {
-    const LightDraw draw = lights_.sample(Vec3f(0), values_, u0, u1, u2);
+    const LightSample draw = lights_.sample(Vec3f(0), values_, u0, u1, u2);
     return {draw.direction, colour(draw.radiance), draw.pdf};
   }
   bool is_drawn() const { return lights_.is_drawn(); }
   const std::optional<Sun>& sun() const { return sun_; }
 
  private:
-  static Spectrum colour(const Channels& rgb) { return {rgb[0], rgb[1], rgb[2]}; }
+  static Rgb colour(const SampledSpectrum& rgb) { return {rgb[0], rgb[1], rgb[2]}; }
   static SceneLightsDescription description(const std::optional<ImageEnvironment>& environment,
                                             const std::optional<Sun>& sun) {
     SceneLightsDescription lights;

@@ -81,7 +81,7 @@ inline LightSeen trace(const LightsCase& scene, const SceneLights& lights, const
 
 /// What the ray of a draw finds of the light that was drawn.
 inline LightSeen trace(const LightsCase& scene, const SceneLights& lights, const Vec3f& from,
-                       const LightDraw& draw, const SpectrumValues& values) {
+                       const LightSample& draw, const SpectrumValues& values) {
   if (std::isinf(draw.distance)) return lights.escape(from, draw.direction, values);
   for (uint32_t i = 0; i < scene.emitters.size(); ++i) {
     const auto point = scene.emitters[i]->intersect(from, draw.direction);

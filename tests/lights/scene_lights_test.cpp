@@ -79,7 +79,8 @@ std::vector<LightsCase> all_cases() {
   return cases;
 }
 
-LightDraw draw_with(const SceneLights& lights, const SpectrumValues& values, RandomStream* random) {
+LightSample draw_with(const SceneLights& lights, const SpectrumValues& values,
+                      RandomStream* random) {
   const float u0 = random->uniform();
   const float u1 = random->uniform();
   return lights.sample(kPosition, values, u0, u1, random->uniform());
@@ -112,7 +113,7 @@ TEST(SceneLights, ADrawHasTheDensityAndRadianceThatItsRayFinds) {
       int compared = 0;
       int off = 0;
       for (int i = 0; i < 20'000; ++i) {
-        const LightDraw draw = draw_with(lights, *values, &random);
+        const LightSample draw = draw_with(lights, *values, &random);
         ASSERT_TRUE(std::isfinite(draw.pdf) && draw.pdf >= 0 && is_finite(draw.radiance));
         if (draw.pdf == 0) continue;
         ASSERT_NEAR(draw.direction.length(), 1, 1e-5) << scene.name;
@@ -157,7 +158,7 @@ TEST(SceneLights, DrawsFollowTheDensityThatRaysFind) {
     std::vector<uint64_t> counts(expected.size(), 0);
     uint64_t with_extent = 0;
     for (int i = 0; i < kSamples; ++i) {
-      const LightDraw draw = draw_with(lights, values, &random);
+      const LightSample draw = draw_with(lights, values, &random);
       if (draw.delta || draw.pdf == 0) continue;
       ++with_extent;
       ++counts[in_sun(scene, draw.direction) ? counts.size() - 1 : bin_of(draw.direction)];
@@ -203,7 +204,7 @@ TEST(SceneLights, DrawsAndEscapesTogetherEstimateTheIntegralOfWhatRaysSee) {
     RandomStream random(21, 22, 23, 24);
     testing::RunningStatistics estimates;
     for (int i = 0; i < 300'000; ++i) {
-      const LightDraw draw = draw_with(lights, values, &random);
+      const LightSample draw = draw_with(lights, values, &random);
       const float rest = draw.delta ? 0 : kByItself;
       double sum = draw.pdf > 0 ? f(draw.direction) * draw.radiance[1] / (draw.pdf + rest) : 0;
       const float u0 = random.uniform();
@@ -229,7 +230,7 @@ TEST(SceneLights, ExtremesOfTheUniformNumbersAreDirections) {
   for (const LightsCase& scene : all_cases()) {
     const SceneLights lights(scene.description, spectra().table);
     for (int i = 0; i < 8; ++i) {
-      const LightDraw draw =
+      const LightSample draw =
           lights.sample(kPosition, values, i & 1 ? kLast : 0, i & 2 ? kLast : 0, i & 4 ? kLast : 0);
       EXPECT_TRUE(std::isfinite(draw.pdf) && is_finite(draw.radiance)) << scene.name;
       if (draw.pdf == 0) continue;
@@ -252,7 +253,7 @@ TEST(SceneLights, TheOriginMovesAllLightsAlike) {
   description.origin = {1e6, 0, 0};
   const SceneLights lights(description, spectra().table);
   const Vec3d expected = Vec3d(1, 0, 0) * testing::turned();
-  const LightDraw draw = lights.sample({0, 0, 0}, values, 0.5F, 0.5F, 0.9F);
+  const LightSample draw = lights.sample({0, 0, 0}, values, 0.5F, 0.5F, 0.9F);
   EXPECT_TRUE(draw.delta);
   EXPECT_NEAR((draw.direction * draw.distance - Vec3f(expected)).length(), 0, 1e-5);
   EXPECT_GT(lights.escape({0, 0, 0}, {0, 0, 1}, values).pdf, 0);
@@ -284,7 +285,7 @@ TEST(SceneLights, AnAreaLightGivesItsRadianceTimesItsSolidAngle) {
     RandomStream random(1, 2, 3, 4);
     testing::RunningStatistics estimates;
     for (int i = 0; i < 100'000; ++i) {
-      const LightDraw draw = draw_with(lights, values, &random);
+      const LightSample draw = draw_with(lights, values, &random);
       // The constant spectrum is not white, but has a luminance of 3 after all.
       const Vec3d rgb(values.to_rgb(draw.radiance));
       estimates.add(draw.pdf > 0 ? luminance_weights(spectra().table.space()).dot(rgb) / draw.pdf
@@ -304,7 +305,7 @@ TEST(SceneLights, AnInvisibleAreaLightIsOnlyDrawn) {
   const auto sphere = std::make_shared<testing::TestSphere>(Vec3f(2, 0, 0), 1.0F);
   testing::add_emitter(&scene, sphere, {.radiance = spectra().grey}, false, true);
   const SceneLights lights(scene.description, spectra().table);
-  const LightDraw draw = lights.sample(kPosition, spectra().table.in_rgb(), 0.5F, 0.5F, 0.5F);
+  const LightSample draw = lights.sample(kPosition, spectra().table.in_rgb(), 0.5F, 0.5F, 0.5F);
   EXPECT_TRUE(draw.delta);
   EXPECT_NEAR(draw.radiance[1] / draw.pdf, sphere->solid_angle(kPosition), 1e-4);
 }
@@ -321,7 +322,7 @@ TEST(SceneLights, DrawsNoLightThatIsTheSameFromEverywhere) {
   sky.lights.emplace_back(DistantLight{.radiance = spectra().grey});
   const SceneLights with_sun(sky, spectra().table);
   for (const float u : {0.0F, 0.3F, 0.999F}) {
-    const LightDraw draw = with_sun.sample(kPosition, values, 0.5F, 0.5F, u);
+    const LightSample draw = with_sun.sample(kPosition, values, 0.5F, 0.5F, u);
     EXPECT_TRUE(draw.delta);
     EXPECT_EQ(draw.pdf, 1);
   }

@@ -58,7 +58,9 @@ class MaterialWorld {
   }
   SpectrumId flint() const { return flint_; }
 
-  Channels eta_of_flint(const SurfaceContext& context) const { return context.spectra[flint_]; }
+  SampledSpectrum eta_of_flint(const SurfaceContext& context) const {
+    return context.spectra[flint_];
+  }
 
  private:
   SpectrumId add(SpectralDistribution::Kind spectrum, SpectrumRole role) {

@@ -182,7 +182,7 @@ Scattered scattered(const Material& material, const SurfacePoint& point, const V
                     const SurfaceContext& context, int samples) {
   Scattered result;
   RandomStream random(11, 0, 0, 0);
-  const auto total = [&](const Channels& value) {
+  const auto total = [&](const SampledSpectrum& value) {
     double sum = 0;
     for (int c = 0; c < context.spectra.channels(); ++c) sum += value[c];
     return sum / context.spectra.channels();

@@ -139,8 +139,8 @@ TEST(SolidTextures, MarbleIsLayersAlongY) {
         table.add(SpectrumTexture(MarbleTexture{half(), 3, 0.25F, 2, variation}));
     return table.evaluate_spectrum(id, at_place(position), rgb);
   };
-  const auto expect_height = [&](const Channels& found, double height) {
-    const Channels expected = rgb.reflectance(marble_color(static_cast<float>(height)));
+  const auto expect_height = [&](const SampledSpectrum& found, double height) {
+    const SampledSpectrum expected = rgb.reflectance(marble_color(static_cast<float>(height)));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-6);
   };
   expect_height(seen(0, {5, 0, 7}), 0.5);

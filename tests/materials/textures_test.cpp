@@ -99,8 +99,8 @@ TEST(ImageMap, OfColoursIsAReflectance) {
   TextureTable table;
   const auto image = std::make_shared<TextureImage>(1, 1, 3, std::vector<float>{0.1F, 0.2F, 0.6F});
   const SpectrumTextureId id = table.add(SpectrumTexture(ImageMapTexture{image, {}}));
-  const Channels found = table.evaluate_spectrum(id, at(0, 0), rgb);
-  const Channels expected = rgb.reflectance({0.1F, 0.2F, 0.6F});
+  const SampledSpectrum found = table.evaluate_spectrum(id, at(0, 0), rgb);
+  const SampledSpectrum expected = rgb.reflectance({0.1F, 0.2F, 0.6F});
   for (int i = 0; i < kMaxChannels; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6);
 }
 
@@ -328,7 +328,7 @@ TEST(NestedTextures, AreEvaluatedOnceEach) {
       return evaluated<SpectrumTextureId>(
           depth, SpectrumTexture(half), next,
           [&](const TextureTable& table, SpectrumTextureId id, uint64_t& count) {
-            const Channels found = table.evaluate_spectrum(id, at(0.25F, 0.5F), rgb, &count);
+            const SampledSpectrum found = table.evaluate_spectrum(id, at(0.25F, 0.5F), rgb, &count);
             EXPECT_FLOAT_EQ(found[1], 0.5F);
           });
     };

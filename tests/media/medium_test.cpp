@@ -62,7 +62,7 @@ TEST(Medium, HasNoSpreadOfBoundsWhereItEndsAtTheMiddlesOfEqualVoxels) {
 TEST(Medium, RefusesCoefficientsThatAreNegativeOrNotFinite) {
   for (const float bad : {-1.0F, -1e-30F, kNan, kInfinity}) {
     for (int channel = 0; channel < kChannels; ++channel) {
-      const std::pair<const char*, Spectrum Component::*> members[] = {
+      const std::pair<const char*, Rgb Component::*> members[] = {
           {"sigma_a", &Component::sigma_a},
           {"sigma_s", &Component::sigma_s},
           {"emission", &Component::emission}};
@@ -81,14 +81,14 @@ TEST(Medium, RefusesCoefficientsThatAreNegativeOrNotFinite) {
 
 TEST(Medium, RefusesCoefficientsWhoseSumOrProductOverflows) {
   Component component = plain();
-  component.sigma_a = component.sigma_s = Spectrum(1, 2e38F, 1);
+  component.sigma_a = component.sigma_s = Rgb(1, 2e38F, 1);
   EXPECT_EQ(
       complaint({component}),
       "component 0: sigma_a + sigma_s of channel 1 is inf; it must be finite and not negative");
-  component.sigma_s = Spectrum(1.0F);
-  component.emission = Spectrum(1, 1, 1e38F);
+  component.sigma_s = Rgb(1.0F);
+  component.emission = Rgb(1, 1, 1e38F);
   EXPECT_EQ(complaint({component}), "");
-  component.emission = Spectrum(1, 2, 1);
+  component.emission = Rgb(1, 2, 1);
   EXPECT_EQ(complaint({component}),
             "component 0: sigma_a · emission of channel 1 is inf; it must be finite and not "
             "negative");
@@ -241,10 +241,10 @@ TEST(Medium, WorldToWalkRelativeToAPointNearByHasNoDistance) {
 }
 
 /// What an albedo makes of an extinction that is one for all channels.
-Component coloured(std::shared_ptr<const Field> field, const Spectrum& albedo, float sigma_t,
+Component coloured(std::shared_ptr<const Field> field, const Rgb& albedo, float sigma_t,
                    float scale) {
   Component component = component_of(std::move(field));
-  component.sigma_a = (Spectrum(1.0F) - albedo) * sigma_t * scale;
+  component.sigma_a = (Rgb(1.0F) - albedo) * sigma_t * scale;
   component.sigma_s = albedo * sigma_t * scale;
   return component;
 }
@@ -255,7 +255,7 @@ TEST(Medium, ExtinctionStaysGreyUnderAnyAlbedo) {
   RandomStream random(3, 0, 0, 0);
   int rounded = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Spectrum albedo(random.uniform(), 1 - 0x1p-20F * random.uniform(), random.uniform());
+    const Rgb albedo(random.uniform(), 1 - 0x1p-20F * random.uniform(), random.uniform());
     const float sigma_t = std::exp(20 * random.uniform() - 10);
     for (const float scale : {1.0F, 0.3F, random.uniform() + 0.01F}) {
       const Component component = coloured(field, albedo, sigma_t, scale);
@@ -268,7 +268,7 @@ TEST(Medium, ExtinctionStaysGreyUnderAnyAlbedo) {
 }
 
 TEST(Medium, ExtinctionIsGreyUnlessAComponentIsNot) {
-  const Component colourful = coloured(plain().density, Spectrum(0.9F, 0.7F, 0.1F), 3, 0.3F);
+  const Component colourful = coloured(plain().density, Rgb(0.9F, 0.7F, 0.1F), 3, 0.3F);
   const Medium grey({colourful, plain()});
   EXPECT_TRUE(grey.has_grey_extinction());
   EXPECT_FALSE(grey.is_grey());
@@ -283,21 +283,21 @@ TEST(Medium, ExtinctionIsGreyUnlessAComponentIsNot) {
 
 TEST(Medium, IsGreyOnlyIfEmissionIsToo) {
   Component component = plain();
-  component.emission = Spectrum(1, 1, 2);
+  component.emission = Rgb(1, 1, 2);
   EXPECT_TRUE(Medium({component}).has_grey_extinction());
   EXPECT_FALSE(Medium({component}).is_grey());
-  component.emission = Spectrum(2.0F);
+  component.emission = Rgb(2.0F);
   EXPECT_TRUE(Medium({component}).is_grey());
 }
 
 TEST(Medium, EmitsIfAComponentAbsorbsAndEmits) {
   Component component = plain();
-  component.emission = Spectrum(1.0F);
+  component.emission = Rgb(1.0F);
   EXPECT_FALSE(Medium({component}).emits());
-  component.sigma_a = Spectrum(0.5F);
+  component.sigma_a = Rgb(0.5F);
   EXPECT_TRUE(Medium({component}).emits());
   EXPECT_TRUE(Medium({plain(), component}).emits());
-  component.emission = Spectrum(0.0F);
+  component.emission = Rgb(0.0F);
   EXPECT_FALSE(Medium({component}).emits());
 }
 

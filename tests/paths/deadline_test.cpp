@@ -56,7 +56,7 @@ TEST(Deadline, AWishToStopLeavesAFirstPassASecond) {
   Deadline deadline(0);
   deadline.begin_pass(0, true);
   EXPECT_FALSE(deadline.stop_is_wished());
-  deadline.wish_to_stop(4);
+  deadline.request_stop(4);
   EXPECT_TRUE(deadline.stop_is_wished());
   EXPECT_FALSE(deadline.is_over(4, 4 / 4.9));
   EXPECT_TRUE(deadline.is_over(4, 4 / 5.1));
@@ -67,7 +67,7 @@ TEST(Deadline, AWishToStopLeavesAFirstPassASecond) {
 TEST(Deadline, AWishToStopEndsOtherPassesAtOnce) {
   Deadline deadline(100);
   deadline.begin_pass(3, false);
-  deadline.wish_to_stop(4);
+  deadline.request_stop(4);
   EXPECT_TRUE(deadline.is_over(4, 0.9999));
   EXPECT_TRUE(deadline.is_over(4, 0));
 }
@@ -75,8 +75,8 @@ TEST(Deadline, AWishToStopEndsOtherPassesAtOnce) {
 TEST(Deadline, TheFirstWishCounts) {
   Deadline deadline(0);
   deadline.begin_pass(0, true);
-  deadline.wish_to_stop(4);
-  deadline.wish_to_stop(4.5);
+  deadline.request_stop(4);
+  deadline.request_stop(4.5);
   EXPECT_TRUE(deadline.is_over(5, 0.9999));
 }
 

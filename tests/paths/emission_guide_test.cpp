@@ -45,9 +45,9 @@ Matrix4d crooked() {
 BoundMedium make_bound(const std::shared_ptr<const Field>& density) {
   Component component;
   component.density = density;
-  component.sigma_a = Spectrum(2.0F, 1.0F, 0.5F);
-  component.sigma_s = Spectrum(0.1F);
-  component.emission = Spectrum(1.0F, 0.5F, 0.25F);
+  component.sigma_a = Rgb(2.0F, 1.0F, 0.5F);
+  component.sigma_s = Rgb(0.1F);
+  component.emission = Rgb(1.0F, 0.5F, 0.25F);
   auto medium = std::make_shared<const Medium>(std::vector<Component>{component});
   return {medium, channels_of(*medium)};
 }

@@ -21,14 +21,14 @@ Medium lump(const Matrix4d& index_to_world) {
   };
   Component component;
   component.density = make_field(Vec3i(-12), Vec3i(11), density, index_to_world);
-  component.sigma_a = Spectrum(0.2F);
-  component.sigma_s = Spectrum(3, 2, 1.5F);
+  component.sigma_a = Rgb(0.2F);
+  component.sigma_s = Rgb(3, 2, 1.5F);
   component.phase = PhaseFunction::henyey_greenstein(0.5F);
   return Medium({component});
 }
 
 Image picture(const Medium& medium, const View& view) {
-  const Surroundings lights{Spectrum(0.5F), Sun({.elevation = 50}, UpAxis::kY)};
+  const Surroundings lights{Rgb(0.5F), Sun({.elevation = 50}, UpAxis::kY)};
   RenderSettings settings;
   settings.samples = 64;
   return render(medium, Camera(view, kSize, kSize), lights, settings).film.to_image();

@@ -41,7 +41,7 @@ class FilmFileTest : public ::testing::Test {
     header.seconds = 1.5;
     header.notes = "notes";
     std::string path = (folder_ / name).string();
-    AsideFile file(path);
+    AtomicFile file(path);
     write_film(file, header, film);
     return path;
   }

@@ -20,15 +20,15 @@ constexpr int kWidth = 12;
 constexpr int kHeight = 8;
 
 /// A homogeneous cube, 2 wide, that glows.
-Medium glowing_cube(const Spectrum& sigma_s) {
+Medium glowing_cube(const Rgb& sigma_s) {
   Matrix4d eighths;
   eighths.setScale(Vec3d(0.125));
   Component component;
   component.density = make_field(
       Vec3i(-8), Vec3i(7), [](const Vec3i&) { return 1.0F; }, eighths);
-  component.sigma_a = Spectrum(0.3F);
+  component.sigma_a = Rgb(0.3F);
   component.sigma_s = sigma_s;
-  component.emission = Spectrum(2.0F, 1.0F, 0.5F);
+  component.emission = Rgb(2.0F, 1.0F, 0.5F);
   std::vector<Component> components;
   components.push_back(std::move(component));
   return Medium(std::move(components));
@@ -38,7 +38,7 @@ Camera camera_at(const Vec3d& from) {
   return {{from, Vec3d(0), Vec3d(0, 1, 0), 35}, kWidth, kHeight};
 }
 
-Surroundings environment() { return {Spectrum(0.5F, 1.0F, 1.5F)}; }
+Surroundings environment() { return {Rgb(0.5F, 1.0F, 1.5F)}; }
 
 RenderSettings sampled(uint32_t samples) {
   RenderSettings settings;
@@ -71,7 +71,7 @@ void expect_parts_make_the_whole(const Image& image) {
 TEST(Layers, PartsOfTheLightAddUpForEveryKindOfPath) {
   // One path for all channels, one for each, and one that carries channels of its own.
   for (const char* tracker : {"delta", "weighted-delta:rate-scale=1.3", "spectral"}) {
-    for (const Spectrum& sigma_s : {Spectrum(1.5F), Spectrum(1.5F, 0.7F, 0.2F)}) {
+    for (const Rgb& sigma_s : {Rgb(1.5F), Rgb(1.5F, 0.7F, 0.2F)}) {
       for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
         RenderSettings settings = sampled(7);
         settings.walk.tracker = tracker;
@@ -86,7 +86,7 @@ TEST(Layers, PartsOfTheLightAddUpForEveryKindOfPath) {
 }
 
 TEST(Layers, PartsAreThePicturesOfPathsThatEndThere) {
-  const Medium medium = glowing_cube(Spectrum(1.5F));
+  const Medium medium = glowing_cube(Rgb(1.5F));
   RenderSettings settings = sampled(5);
   const auto picture = [&](uint32_t max_scatterings) {
     settings.max_scatterings = max_scatterings;
@@ -112,15 +112,15 @@ TEST(Layers, OfTheMiddleOfACubeAreThoseOfTheClosedForm) {
   // A camera far away sees the middle of the cube along 2 of extinction 0.3 + sigma_s. Light that
   // has not scattered: T of the background, and (1 - T) of sigma_a / sigma_t of the glow.
   for (const char* tracker : {"delta", "spectral"}) {
-    const Spectrum sigma_s(1.2F, 0.6F, 0.2F);
+    const Rgb sigma_s(1.2F, 0.6F, 0.2F);
     const Medium medium = glowing_cube(sigma_s);
     RenderSettings settings = sampled(20'000);
     settings.crop = Crop{6, 4, 7, 5};
     settings.walk.tracker = tracker;
     const Camera camera({Vec3d(0, 0, 60), Vec3d(0), Vec3d(0, 1, 0), 0.5}, kWidth, kHeight);
     const Image image = render(medium, camera, environment(), settings).film.to_image();
-    const Spectrum glow(2.0F, 1.0F, 0.5F);
-    const Spectrum outside(0.5F, 1.0F, 1.5F);
+    const Rgb glow(2.0F, 1.0F, 0.5F);
+    const Rgb outside(0.5F, 1.0F, 1.5F);
     const std::string names[] = {"R", "G", "B"};
     for (int c = 0; c < kChannels; ++c) {
       const double sigma_t = 0.3 + sigma_s[c];
@@ -143,7 +143,7 @@ TEST(Layers, OfTheMiddleOfACubeAreThoseOfTheClosedForm) {
 // them may rarely have it: depths are means over events with their weights.
 TEST(Layers, DepthsCountByTheWeightsOfTheirEvents) {
   constexpr double kLength = 2;
-  const Spectrum sigma_s(6, 1, 0.3F);
+  const Rgb sigma_s(6, 1, 0.3F);
   double events = 0;
   double ways = 0;
   for (int c = 0; c < kChannels; ++c) {
@@ -170,7 +170,7 @@ TEST(Layers, DepthsCountByTheWeightsOfTheirEvents) {
 }
 
 TEST(Layers, ChangeNothingOfThePicture) {
-  const Medium medium = glowing_cube(Spectrum(1.5F, 0.7F, 0.2F));
+  const Medium medium = glowing_cube(Rgb(1.5F, 0.7F, 0.2F));
   RenderSettings settings = sampled(3);
   const Film with = render(medium, camera_at({0, 0, 6}), environment(), settings).film;
   settings.layers = {};
@@ -180,7 +180,7 @@ TEST(Layers, ChangeNothingOfThePicture) {
 }
 
 TEST(Crop, IsBitForBitThePartOfThePicture) {
-  const Medium medium = glowing_cube(Spectrum(1.5F, 0.7F, 0.2F));
+  const Medium medium = glowing_cube(Rgb(1.5F, 0.7F, 0.2F));
   RenderSettings settings = sampled(3);
   const Image whole = render(medium, camera_at({1, 2, 6}), environment(), settings).film.to_image();
   for (const Crop& crop : {Crop{3, 2, 10, 7}, Crop{0.25, 0.25, 0.8, 0.875, true}}) {
@@ -215,7 +215,7 @@ TEST(Crop, IsWithinThePictureAndHasPixels) {
 }
 
 TEST(OnPass, SeesTheFilmGrow) {
-  const Medium medium = glowing_cube(Spectrum(1.5F));
+  const Medium medium = glowing_cube(Rgb(1.5F));
   RenderSettings settings = sampled(9);
   std::vector<uint32_t> samples;
   settings.on_pass = [&](const Film& film) { samples.push_back(film.sample_counts().fewest); };

@@ -26,7 +26,7 @@ inline std::shared_ptr<Field> lumpy_field() {
       index_to_world);
 }
 
-inline Component cloud(const Spectrum& sigma_a, const Spectrum& sigma_s, float g) {
+inline Component cloud(const Rgb& sigma_a, const Rgb& sigma_s, float g) {
   Component component;
   component.density = lumpy_field();
   component.sigma_a = sigma_a;
@@ -39,7 +39,7 @@ inline Camera camera_for(const Medium& medium, int width, int height) {
   return {frame_box(medium.world_bounds(), UpAxis::kY, 30, double(width) / height), width, height};
 }
 
-inline Surroundings constant_light(float radiance) { return {Spectrum(radiance)}; }
+inline Surroundings constant_light(float radiance) { return {Rgb(radiance)}; }
 
 inline RenderSettings settings_of(uint32_t samples, const char* tracker = "delta") {
   RenderSettings settings;

@@ -34,7 +34,7 @@ double error_of(const Film& film, const Film& truth) {
 TEST(NoiseTarget, IsReachedWithoutBias) {
   constexpr double kNoise = 0.02;
   constexpr int kSeeds = 100;
-  const Medium medium({cloud(Spectrum(0.5F), Spectrum(5.0F, 3.0F, 1.0F), 0.3F)});
+  const Medium medium({cloud(Rgb(0.5F), Rgb(5.0F, 3.0F, 1.0F), 0.3F)});
   const PathScene scene = scene_of(medium, camera_for(medium, 24, 18), constant_light(1));
   RenderSettings settings;
   settings.layers = {};
@@ -60,7 +60,7 @@ TEST(NoiseTarget, IsReachedWithoutBias) {
 }
 
 TEST(NoiseTarget, SamplesAreThoseAllowedAtMost) {
-  const Medium medium({cloud(Spectrum(0.5F), Spectrum(5.0F), 0)});
+  const Medium medium({cloud(Rgb(0.5F), Rgb(5.0F), 0)});
   const PathScene scene = scene_of(medium, camera_for(medium, 32, 24), constant_light(1));
   RenderSettings settings;
   settings.samples = 50;
@@ -78,7 +78,7 @@ TEST(NoiseTarget, SamplesAreThoseAllowedAtMost) {
 
 // Nothing to see is no noise.
 TEST(NoiseTarget, ABlackPictureTakesFewSamples) {
-  const Medium medium({cloud(Spectrum(0.5F), Spectrum(5.0F), 0)});
+  const Medium medium({cloud(Rgb(0.5F), Rgb(5.0F), 0)});
   const PathScene scene = scene_of(medium, camera_for(medium, 8, 6), constant_light(0));
   RenderSettings settings;
   settings.samples = 0;

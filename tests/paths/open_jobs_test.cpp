@@ -31,10 +31,10 @@ TEST(OpenJobs, HaveCleanPlacesOfTheirOwn) {
                     beside.first + beside.paths <= opened.first);
       }
       for (std::size_t i = opened.first; i < opened.first + opened.paths; ++i) {
-        ASSERT_EQ(jobs.results[i].radiance, Spectrum(0));
+        ASSERT_EQ(jobs.results[i].radiance, Rgb(0));
         ASSERT_TRUE(is_black(jobs.spectra[i]));
-        jobs.results[i].radiance = Spectrum(1);
-        jobs.spectra[i] = Channels(1);
+        jobs.results[i].radiance = Rgb(1);
+        jobs.spectra[i] = SampledSpectrum(1);
       }
       open.push_back(number);
     } else if (!open.empty()) {

@@ -19,13 +19,13 @@ constexpr PathJob kJob{.first_pixel = 16, .pixels = 64, .first_sample = 0, .samp
 
 /// Everything that a path needs, in one place.
 struct Stage {
-  explicit Stage(const Spectrum& sigma_s, const WalkSettings& walk = {})
+  explicit Stage(const Rgb& sigma_s, const WalkSettings& walk = {})
       : scene(scene_of(Medium({Component{.density = make_field(Vec3i(-8), Vec3i(7), hash_noise),
-                                         .sigma_a = Spectrum(0.01F),
+                                         .sigma_a = Rgb(0.01F),
                                          .sigma_s = sigma_s,
                                          .phase = {}}}),
                        Camera({Vec3d(0, 0, 30), Vec3d(0), Vec3d(0, 1, 0), 30}, kColumns, kRows),
-                       {Spectrum(1.0F), Sun({.elevation = 50}, UpAxis::kY)})),
+                       {Rgb(1.0F), Sun({.elevation = 50}, UpAxis::kY)})),
         factory(scene, ColorMode::kRgb, 3, walk) {
     setup.scene = &scene;
     setup.factory = &factory;
@@ -37,7 +37,7 @@ struct Stage {
   }
 
   PathScene scene;
-  ColorFactory factory;
+  WavelengthSampler factory;
   PathSetup setup;
 };
 
@@ -53,7 +53,7 @@ TEST(PathWavefront, IsStoppedWithinAFlight) {
   WalkSettings settings;
   settings.tracker = "ray-marching:step=1e-9";
   settings.interpolation = Interpolation::kNearest;
-  const Stage stage(Spectrum(0.5F), settings);
+  const Stage stage(Rgb(0.5F), settings);
   PathWavefront wavefront(stage.setup);
   for (const int allowed : {1, 2, 5}) {
     Film film(kColumns, kRows);
@@ -66,7 +66,7 @@ TEST(PathWavefront, IsStoppedWithinAFlight) {
 
 TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
   // One path for all channels, and one for each.
-  for (const Spectrum& sigma_s : {Spectrum(0.5F), Spectrum(0.5F, 0.2F, 0.1F)}) {
+  for (const Rgb& sigma_s : {Rgb(0.5F), Rgb(0.5F, 0.2F, 0.1F)}) {
     Stage stage(sigma_s);
     Film whole(kColumns, kRows);
     PathWavefront undisturbed(stage.setup);
@@ -92,7 +92,7 @@ TEST(PathWavefront, AJobThatIsStoppedLeavesNothing) {
 }
 
 TEST(PathWavefront, CountsThePathsOfFinishedJobs) {
-  Stage stage(Spectrum(0.5F));
+  Stage stage(Rgb(0.5F));
   PathWavefront wavefront(stage.setup);
   Film film(kColumns, kRows);
   EXPECT_TRUE(wavefront.trace(kJob, film));

@@ -36,7 +36,7 @@ void expect_pixels_of_whole_pictures(const Film& film, const Medium& medium, con
 }
 
 TEST(Renderer, StopsWhenAskedTo) {
-  const Medium medium({cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
+  const Medium medium({cloud(Rgb(0.1F), Rgb(9.0F), 0.8F)});
   const Camera camera = camera_for(medium, 64, 64);
   RenderSettings settings = settings_of(1 << 20);
   settings.clock = counted_clock();
@@ -54,7 +54,7 @@ TEST(Renderer, StopsWhenAskedTo) {
 }
 
 TEST(Renderer, TimeEndsAPictureOfUnlimitedSamples) {
-  const Medium medium({cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
+  const Medium medium({cloud(Rgb(0.1F), Rgb(9.0F), 0.8F)});
   const Camera camera = camera_for(medium, 16, 16);
   RenderSettings settings = settings_of(0);
   settings.time_limit = 0.5;
@@ -66,7 +66,7 @@ TEST(Renderer, TimeEndsAPictureOfUnlimitedSamples) {
 }
 
 /// A medium so thick that paths in it scatter tens of thousands of times; with gaps between lumps.
-Medium thick_medium() { return Medium({cloud(Spectrum(0.0F), Spectrum(3e4F), 0)}); }
+Medium thick_medium() { return Medium({cloud(Rgb(0.0F), Rgb(3e4F), 0)}); }
 
 TEST(Renderer, TimeEndsAFirstPassThatWouldTakeLong) {
   const Medium medium = thick_medium();

@@ -44,11 +44,11 @@ PictureMean picture_mean(const Film& film, int channel) {
 // Of a tracker whose weights grow at every scattering a picture would have an infinite variance,
 // and be far from right: it is refused before it starts, unless paths are short.
 TEST(Renderer, RefusesTrackersWhoseWeightsGrow) {
-  const Spectrum colour(1.0F, 2.0F, 3.0F);
-  const Spectrum albedos(1.0F, 0.5F, 0.2F);
-  const Medium grey({cloud(Spectrum(0.0F), Spectrum(3.0F), 0)});
-  const Medium coloured({cloud(Spectrum(0.0F), colour, 0)});
-  const Medium grey_extinction({cloud(Spectrum(1.0F) - albedos, albedos, 0)});
+  const Rgb colour(1.0F, 2.0F, 3.0F);
+  const Rgb albedos(1.0F, 0.5F, 0.2F);
+  const Medium grey({cloud(Rgb(0.0F), Rgb(3.0F), 0)});
+  const Medium coloured({cloud(Rgb(0.0F), colour, 0)});
+  const Medium grey_extinction({cloud(Rgb(1.0F) - albedos, albedos, 0)});
   struct Case {
     const Medium& medium;
     const char* tracker;
@@ -104,7 +104,7 @@ TEST(Renderer, RefusesTrackersWhoseWeightsGrow) {
 
 // What a path that overflows would have added is not known, and neither is the error of its pixel.
 TEST(Renderer, AnOverflowMakesTheVarianceInfinite) {
-  const Medium medium({cloud(Spectrum(0.0F), Spectrum(300.0F), 0)});
+  const Medium medium({cloud(Rgb(0.0F), Rgb(300.0F), 0)});
   RenderSettings settings = settings_of(2, "weighted-delta:rate-scale=0.1");
   settings.studies_unbounded_weights = true;
   const RenderResult result = render(medium, camera_for(medium, 4, 4), constant_light(1), settings);
@@ -159,20 +159,18 @@ void expect_furnace(const Component& component, int samples) {
   }
 }
 
-TEST(Renderer, WhiteFurnaceIsWhite) {
-  expect_furnace(cloud(Spectrum(0.0F), Spectrum(6.0F), 0.4F), 512);
-}
+TEST(Renderer, WhiteFurnaceIsWhite) { expect_furnace(cloud(Rgb(0.0F), Rgb(6.0F), 0.4F), 512); }
 
 TEST(Renderer, EmittingFurnaceIsWhite) {
-  Component component = cloud(Spectrum(3.0F), Spectrum(3.0F), -0.3F);
-  component.emission = Spectrum(1.0F);
+  Component component = cloud(Rgb(3.0F), Rgb(3.0F), -0.3F);
+  component.emission = Rgb(1.0F);
   expect_furnace(component, 512);
 }
 
 // One path for each channel, and an extinction that differs sixteenfold among them.
 TEST(Renderer, ChromaticFurnaceIsWhiteInEveryChannel) {
-  Component component = cloud(Spectrum(0.5F, 2, 1), Spectrum(0.5F, 2, 15), 0.2F);
-  component.emission = Spectrum(1.0F);
+  Component component = cloud(Rgb(0.5F, 2, 1), Rgb(0.5F, 2, 15), 0.2F);
+  component.emission = Rgb(1.0F);
   const Medium medium({component});
   const RenderResult result =
       render(medium, camera_for(medium, 32, 32), constant_light(1), settings_of(512));
@@ -186,8 +184,8 @@ TEST(Renderer, ChromaticFurnaceIsWhiteInEveryChannel) {
 
 // Without a scattering what is cut is what does not pass: A of the picture.
 TEST(Renderer, TellsTheWeightThatTheLimitCuts) {
-  for (const Spectrum& extinction : {Spectrum(2.0F), Spectrum(1.0F, 2.0F, 3.0F)}) {
-    const Medium medium({cloud(Spectrum(0.0F), extinction, 0)});
+  for (const Rgb& extinction : {Rgb(2.0F), Rgb(1.0F, 2.0F, 3.0F)}) {
+    const Medium medium({cloud(Rgb(0.0F), extinction, 0)});
     RenderSettings settings = settings_of(16);
     settings.max_scatterings = 0;
     const RenderResult result =
@@ -208,8 +206,8 @@ TEST(Renderer, TellsTheWeightThatTheLimitCuts) {
 
 // Grey extinction under a coloured albedo: one path carries the weights of all channels.
 TEST(Renderer, ColouredAlbedoAgreesWithEachChannelAlone) {
-  const Spectrum albedo(0.95F, 0.6F, 0.2F);
-  const Medium together({cloud((Spectrum(1.0F) - albedo) * 8.0F, albedo * 8.0F, 0.3F)});
+  const Rgb albedo(0.95F, 0.6F, 0.2F);
+  const Medium together({cloud((Rgb(1.0F) - albedo) * 8.0F, albedo * 8.0F, 0.3F)});
   const Camera camera = camera_for(together, 32, 32);
   for (const Absorption absorption : {Absorption::kAnalog, Absorption::kWeighted}) {
     RenderSettings settings = settings_of(512);
@@ -219,7 +217,7 @@ TEST(Renderer, ColouredAlbedoAgreesWithEachChannelAlone) {
     const RenderResult all = render(together, camera, constant_light(1), settings);
     for (int channel = 0; channel < 3; ++channel) {
       const float a = albedo[channel];
-      const Medium alone({cloud(Spectrum((1 - a) * 8), Spectrum(a * 8), 0.3F)});
+      const Medium alone({cloud(Rgb((1 - a) * 8), Rgb(a * 8), 0.3F)});
       settings.walk.seed = 99;
       const RenderResult one = render(alone, camera, constant_light(1), settings);
       const PictureMean mean = picture_mean(all.film, channel);
@@ -232,7 +230,7 @@ TEST(Renderer, ColouredAlbedoAgreesWithEachChannelAlone) {
 
 // Without scattering a pixel is what the light has left: exp(-optical depth).
 TEST(Renderer, AbsorbingMediumLetsThroughItsTransmittance) {
-  const Medium medium({cloud(Spectrum(4.0F), Spectrum(0.0F), 0)});
+  const Medium medium({cloud(Rgb(4.0F), Rgb(0.0F), 0)});
   const Box3d bounds = medium.world_bounds();
   const Vec3d centre = bounds.center();
   // A lens so long that all rays of the one pixel are alike.
@@ -253,7 +251,7 @@ TEST(Renderer, AbsorbingMediumLetsThroughItsTransmittance) {
 }
 
 TEST(Renderer, CameraInsideTheMediumSeesTheFurnaceToo) {
-  const Medium medium({cloud(Spectrum(0.0F), Spectrum(6.0F), 0)});
+  const Medium medium({cloud(Rgb(0.0F), Rgb(6.0F), 0)});
   const Vec3d centre = medium.world_bounds().center();
   const Camera camera({centre, centre + Vec3d(1, 0.2, 0.1), Vec3d(0, 1, 0), 90}, 16, 16);
   const RenderResult result = render(medium, camera, constant_light(1), settings_of(1024));
@@ -264,7 +262,7 @@ TEST(Renderer, CameraInsideTheMediumSeesTheFurnaceToo) {
 
 // The power of the furnaces: an albedo of 0.99 for 1 must fail them.
 TEST(Renderer, AFurnaceThatLosesOnePercentIsNoticed) {
-  const Medium medium({cloud(Spectrum(0.06F), Spectrum(5.94F), 0.4F)});
+  const Medium medium({cloud(Rgb(0.06F), Rgb(5.94F), 0.4F)});
   const RenderResult result =
       render(medium, camera_for(medium, 32, 32), constant_light(1), settings_of(512));
   const PictureMean mean = picture_mean(result.film, 1);
@@ -272,15 +270,15 @@ TEST(Renderer, AFurnaceThatLosesOnePercentIsNoticed) {
 }
 
 std::vector<float> picture_of(const Medium& medium, const RenderSettings& settings) {
-  const Surroundings lights{Spectrum(0.3F), Sun({.elevation = 50}, UpAxis::kY)};
+  const Surroundings lights{Rgb(0.3F), Sun({.elevation = 50}, UpAxis::kY)};
   return render(medium, camera_for(medium, 40, 30), lights, settings).film.to_image().values;
 }
 
 TEST(Renderer, PictureDependsOnSeedAndSamplesAlone) {
   const std::vector<Medium> media = [] {
     std::vector<Medium> list;
-    list.emplace_back(std::vector{cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
-    list.emplace_back(std::vector{cloud(Spectrum(0.1F), Spectrum(4, 1, 0.25F), 0)});
+    list.emplace_back(std::vector{cloud(Rgb(0.1F), Rgb(9.0F), 0.8F)});
+    list.emplace_back(std::vector{cloud(Rgb(0.1F), Rgb(4, 1, 0.25F), 0)});
     return list;
   }();
   for (const Medium& medium : media) {
@@ -301,7 +299,7 @@ TEST(Renderer, PictureDependsOnSeedAndSamplesAlone) {
 }
 
 TEST(Renderer, EveryTargetGivesTheSameBits) {
-  const Medium medium({cloud(Spectrum(0.1F), Spectrum(9.0F), 0.8F)});
+  const Medium medium({cloud(Rgb(0.1F), Rgb(9.0F), 0.8F)});
   std::vector<std::vector<float>> pictures;
   for (const Simd simd : available_simd()) {
     RenderSettings settings = settings_of(9, "weighted-delta");

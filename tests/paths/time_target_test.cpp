@@ -11,7 +11,7 @@ namespace {
 
 // By a clock that counts how often it is asked, which is as often as there is work.
 TEST(TimeTarget, SamplesFillTheTime) {
-  const Medium medium({cloud(Spectrum(0.5F), Spectrum(5.0F), 0)});
+  const Medium medium({cloud(Rgb(0.5F), Rgb(5.0F), 0)});
   const PathScene scene = scene_of(medium, camera_for(medium, 64, 48), constant_light(1));
   RenderSettings settings;
   settings.threads = 1;
@@ -33,7 +33,7 @@ TEST(TimeTarget, SamplesFillTheTime) {
 
 // The decision is not that of the picture's samples: they may cost what they like.
 TEST(TimeTarget, IsKnownForLongTimesAlone) {
-  const Medium medium({cloud(Spectrum(0.5F), Spectrum(5.0F), 0)});
+  const Medium medium({cloud(Rgb(0.5F), Rgb(5.0F), 0)});
   const PathScene scene = scene_of(medium, camera_for(medium, 16, 12), constant_light(1));
   RenderSettings settings;
   settings.samples = 7;

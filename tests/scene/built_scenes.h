@@ -60,7 +60,9 @@ class ParsedScene {
     point.v = v;
     return point;
   }
-  static Vec3f rgb(const Channels& channels) { return {channels[0], channels[1], channels[2]}; }
+  static Vec3f rgb(const SampledSpectrum& channels) {
+    return {channels[0], channels[1], channels[2]};
+  }
   SurfaceContext surface() const { return {values_, scene_.textures}; }
 
   Diagnostics diagnostics_;

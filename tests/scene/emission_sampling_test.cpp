@@ -60,7 +60,7 @@ Rendered render(const PathScene& scene, uint32_t pictures, const Way& way) {
   WalkSettings walk;
   walk.tracker = way.tracker;
   walk.origin = scene.origin;
-  const ColorFactory factory(scene, way.mode, 4, walk);
+  const WavelengthSampler factory(scene, way.mode, 4, walk);
   PathSetup setup;
   setup.scene = &scene;
   setup.factory = &factory;

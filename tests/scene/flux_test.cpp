@@ -46,7 +46,7 @@ FluxScene domain_of(const VolumeMedium& medium, const std::optional<Ground>& gro
   return make_flux_scene(medium, UpAxis::kZ, ground, Interpolation::kNearest);
 }
 
-Ground ground_of(float albedo) { return {.albedo = Spectrum(albedo), .up = UpAxis::kZ}; }
+Ground ground_of(float albedo) { return {.albedo = Rgb(albedo), .up = UpAxis::kZ}; }
 
 /// @param largest_error relative, of the standard error: else a planted error of 1 % would pass
 void expect_estimate(const std::string& name, const Estimate& estimate, double expected,
@@ -185,8 +185,8 @@ TEST(Flux, AbsorbersBesideScatterersCount) {
   VolumeMedium medium = voxels.medium(1);
   std::vector<Component> components = medium.medium->components();
   components.push_back(components[0]);
-  components[1].sigma_a = Spectrum(0.5F);
-  components[1].sigma_s = Spectrum(0.0F);
+  components[1].sigma_a = Rgb(0.5F);
+  components[1].sigma_s = Rgb(0.0F);
   medium.medium = std::make_shared<const Medium>(components);
   FluxScene scene = domain_of(medium);
   scene.meter.beam = beam_from_west(0);
@@ -263,7 +263,7 @@ TEST(Flux, ErrorsOfColumnsAreThoseOfTheirSpread) {
 TEST(Flux, WhatCantBeIsRefused) {
   const PeriodicVoxels voxels = even_layer(1, 3);
   VolumeMedium open = voxels.medium(1);
-  EXPECT_THROW(domain_of(open, Ground{.albedo = Spectrum(0.5F), .height = 1.0, .up = UpAxis::kZ}),
+  EXPECT_THROW(domain_of(open, Ground{.albedo = Rgb(0.5F), .height = 1.0, .up = UpAxis::kZ}),
                Error);
   open.sides.axes[1] = false;
   EXPECT_THROW(domain_of(open), Error);

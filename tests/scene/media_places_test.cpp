@@ -34,7 +34,7 @@ TEST(MediaPlaces, AreWhatTheSetsSay) {
   const BuiltScene built = build_scene(parse(text, diagnostics), diagnostics);
   const PathScene& scene = built.scene;
   ASSERT_EQ(scene.shapes.size(), kShapes);
-  const ColorFactory factory(scene, ColorMode::kRgb, 4, {});
+  const WavelengthSampler factory(scene, ColorMode::kRgb, 4, {});
   MediaPlaces places(scene, factory);
   std::vector<MediaSet> sets(8);
   std::vector<PlaceId> numbers(sets.size(), places.of(MediaSet()));

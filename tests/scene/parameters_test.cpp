@@ -94,7 +94,7 @@ TEST(Parameters, GiveSpectraInFourWays) {
   EXPECT_EQ(rgb.color_space, ColorSpace::kSrgb);
   EXPECT_EQ(std::get<BlackbodyValue>(list.get_spectrum("b", none)).temperature, 6500);
   EXPECT_EQ(std::get<NamedSpectrum>(list.get_spectrum("c", none)).name, "metal-Au-eta");
-  using Samples = std::shared_ptr<const SampledSpectrum>;
+  using Samples = std::shared_ptr<const SpectrumSamples>;
   const auto inline_samples = std::get<Samples>(list.get_spectrum("d", none));
   EXPECT_EQ(inline_samples->wavelengths, (std::vector<double>{300, 900}));
   EXPECT_EQ(inline_samples->values, (std::vector<double>{1, 2}));

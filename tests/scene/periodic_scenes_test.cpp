@@ -84,7 +84,7 @@ TEST(PeriodicVolumes, AreSeenThroughTheirSides) {
         return std::exp(-voxels.depth(at_height(ray, 1.25), at_height(ray, -0.25), true, 200));
       })};
   for (const Interpolation interpolation : kInterpolations) {
-    const PathScene scene = make_volume_scene(voxels.medium(0), camera, {Spectrum(1.0F)});
+    const PathScene scene = make_volume_scene(voxels.medium(0), camera, {Rgb(1.0F)});
     const double expected = expected_of[interpolation == Interpolation::kNearest ? 0 : 1];
     expect_mean("periodic", render_periodic(scene, interpolation, 8192),
                 {expected, expected, expected}, {.absolute = 2e-4, .largest_relative_error = 2e-3});
@@ -99,8 +99,7 @@ TEST(PeriodicVolumes, LetTheSunThroughTheirSides) {
   const Camera camera = slanted();
   Surroundings around;
   around.sun.emplace(
-      SunParameters{.elevation = kElevation, .azimuth = 100, .irradiance = Spectrum(5.0F)},
-      UpAxis::kZ);
+      SunParameters{.elevation = kElevation, .azimuth = 100, .irradiance = Rgb(5.0F)}, UpAxis::kZ);
   const Vec3d to_sun(around.sun->direction());
   const double white =
       kAlbedo * 5 * std::sin(kElevation * std::numbers::pi / 180) / std::numbers::pi;
@@ -110,7 +109,7 @@ TEST(PeriodicVolumes, LetTheSunThroughTheirSides) {
     return white * std::exp(-voxels.depth(at_height(ray, 1.25), ground, true, 200) -
                             voxels.depth(ground, top, true, 200));
   });
-  const Ground ground{.albedo = Spectrum(kAlbedo), .height = 0.0, .up = UpAxis::kZ};
+  const Ground ground{.albedo = Rgb(kAlbedo), .height = 0.0, .up = UpAxis::kZ};
   const PathScene scene = make_volume_scene(voxels.medium(0), camera, around, ground);
   expect_mean("sun", render_periodic(scene, Interpolation::kStochastic, 8192),
               {expected, expected, expected}, {.absolute = 2e-4, .largest_relative_error = 3e-3});
@@ -120,11 +119,10 @@ TEST(PeriodicVolumes, LetTheSunThroughTheirSides) {
 // the sky, however often paths pass the sides.
 TEST(PeriodicVolumes, AreWhiteInAWhiteFurnace) {
   const PeriodicVoxels voxels = noise(3);
-  const Ground ground{.albedo = Spectrum(1.0F), .up = UpAxis::kZ};
+  const Ground ground{.albedo = Rgb(1.0F), .up = UpAxis::kZ};
   for (const ColorMode mode : kColorModes) {
-    const PathScene scene =
-        make_volume_scene(voxels.medium(1, PhaseFunction::henyey_greenstein(0.6F)), slanted(),
-                          {Spectrum(1.0F)}, ground);
+    const PathScene scene = make_volume_scene(
+        voxels.medium(1, PhaseFunction::henyey_greenstein(0.6F)), slanted(), {Rgb(1.0F)}, ground);
     expect_mean("furnace", render_periodic(scene, Interpolation::kStochastic, 512, mode), {1, 1, 1},
                 {.absolute = 1e-5, .largest_relative_error = 5e-3});
   }
@@ -137,7 +135,7 @@ TEST(PeriodicVolumes, MayHaveGaps) {
   std::vector<Volume> volumes(1);
   volumes[0].densities.push_back(*make_field(
       Vec3i(0), Vec3i(0), [](const Vec3i&) { return 1.0F; }, index_to_world));
-  volumes[0].optics.albedo = Spectrum(0.0F);
+  volumes[0].optics.albedo = Rgb(0.0F);
   volumes[0].optics.density_scale = 1e5F;
   PeriodicSides sides{.axes = {true, true, false}};
   sides.extents = Box3d(Vec3d(-1), Vec3d(1));
@@ -149,7 +147,7 @@ TEST(PeriodicVolumes, MayHaveGaps) {
                       kPixels, kPixels);
   // Dark squares of a side of half a unit, in periods of two.
   expect_mean("gaps",
-              render_periodic(make_volume_scene(medium, camera, {Spectrum(1.0F)}),
+              render_periodic(make_volume_scene(medium, camera, {Rgb(1.0F)}),
                               Interpolation::kNearest, 4096),
               {0.9375, 0.9375, 0.9375}, {.absolute = 1e-4, .largest_relative_error = 2e-3});
 }

@@ -27,7 +27,7 @@ struct PeriodicVoxels {
     std::vector<Volume> volumes(1);
     volumes[0].densities.push_back(
         *make_field(Vec3i(0), counts - Vec3i(1), extinction, index_to_world));
-    volumes[0].optics.albedo = Spectrum(albedo);
+    volumes[0].optics.albedo = Rgb(albedo);
     volumes[0].optics.phase = phase;
     return make_medium(std::move(volumes), 0, {.axes = {true, true, false}});
   }

@@ -20,8 +20,7 @@ namespace {
 constexpr int kSize = 16;  // of pictures [pixels]
 
 /// A cube from -1 to 1 in voxels of 1/8, moved.
-VolumeMedium cube(const Spectrum& sigma_a, const Spectrum& sigma_s,
-                  const Vec3d& centre = Vec3d(0)) {
+VolumeMedium cube(const Rgb& sigma_a, const Rgb& sigma_s, const Vec3d& centre = Vec3d(0)) {
   Matrix4d index_to_world;
   index_to_world.setScale(Vec3d(0.125));
   // The centre of voxel 0 is at half a voxel.
@@ -34,7 +33,7 @@ VolumeMedium cube(const Spectrum& sigma_a, const Spectrum& sigma_s,
   return {std::make_shared<const Medium>(std::vector<Component>{component})};
 }
 
-VolumeMedium nothing() { return cube(Spectrum(0.0F), Spectrum(0.0F), Vec3d(0, 50, 0)); }
+VolumeMedium nothing() { return cube(Rgb(0.0F), Rgb(0.0F), Vec3d(0, 50, 0)); }
 
 Picture render_volume(const PathScene& scene, ColorMode mode, uint32_t samples) {
   RenderSettings settings;
@@ -52,13 +51,12 @@ Camera overhead() { return {View{Vec3d(0, 9, 0.001), Vec3d(0), Vec3d(0, 1, 0), 2
 // sky of 1 gives it a.
 TEST(Ground, ReflectsWhatFallsOnIt) {
   constexpr double kElevation = 40;
-  const Sun sun({.elevation = kElevation, .azimuth = 70, .irradiance = Spectrum(3, 2, 1)},
-                UpAxis::kY);
+  const Sun sun({.elevation = kElevation, .azimuth = 70, .irradiance = Rgb(3, 2, 1)}, UpAxis::kY);
   const double slope = std::sin(kElevation * std::numbers::pi / 180);
   for (const ColorMode mode : kColorModes) {
     // A product of spectra is not that of their colours, unless one is grey.
     const bool is_grey = mode == ColorMode::kSpectral;
-    const Ground ground{is_grey ? Spectrum(0.4F) : Spectrum(0.2F, 0.4F, 0.6F), 0};
+    const Ground ground{is_grey ? Rgb(0.4F) : Rgb(0.2F, 0.4F, 0.6F), 0};
     const uint32_t samples = mode == ColorMode::kSpectral ? 1024 : 64;
     for (const bool has_sky : {false, true}) {
       Surroundings around{{}, sun};
@@ -67,7 +65,7 @@ TEST(Ground, ReflectsWhatFallsOnIt) {
         expected[c] = ground.albedo[c] * (3 - c) * slope / std::numbers::pi;
       }
       if (has_sky) {
-        around.environment = Spectrum(1.0F);
+        around.environment = Rgb(1.0F);
         for (int c = 0; c < 3; ++c) expected[c] += ground.albedo[c];
       }
       const PathScene scene = make_volume_scene(nothing(), overhead(), around, ground);
@@ -83,12 +81,12 @@ TEST(Ground, ReflectsWhatFallsOnIt) {
 // With a white ground below, a medium that scatters all, and the same light from everywhere, all is
 // white.
 TEST(Ground, ClosesAFurnace) {
-  const VolumeMedium fog = cube(Spectrum(0.0F), Spectrum(1.5F, 1.0F, 0.5F));
+  const VolumeMedium fog = cube(Rgb(0.0F), Rgb(1.5F, 1.0F, 0.5F));
   const Camera camera({Vec3d(3, 1, 5), Vec3d(0), Vec3d(0, 1, 0), 35}, kSize, kSize);
   for (const double height : {-1.0, -2.5, 0.25}) {
-    const Ground ground{Spectrum(1.0F), height};
+    const Ground ground{Rgb(1.0F), height};
     for (const ColorMode mode : kColorModes) {
-      const PathScene scene = make_volume_scene(fog, camera, {Spectrum(1.0F)}, ground);
+      const PathScene scene = make_volume_scene(fog, camera, {Rgb(1.0F)}, ground);
       expect_mean(fmt::format("{} with a ground at {}", name_of(mode), height),
                   render_volume(scene, mode, 512), {1, 1, 1},
                   {.absolute = 2e-5, .largest_relative_error = 2e-3});
@@ -98,9 +96,9 @@ TEST(Ground, ClosesAFurnace) {
 
 // Where the furnace loses a hundredth at every reflection it is seen.
 TEST(Ground, AnAlbedoOnePercentTooSmallIsNoticed) {
-  const VolumeMedium fog = cube(Spectrum(0.0F), Spectrum(1.0F));
+  const VolumeMedium fog = cube(Rgb(0.0F), Rgb(1.0F));
   const Camera camera({Vec3d(3, 1, 5), Vec3d(0), Vec3d(0, 1, 0), 35}, kSize, kSize);
-  const PathScene scene = make_volume_scene(fog, camera, {Spectrum(1.0F)}, Ground{Spectrum(0.99F)});
+  const PathScene scene = make_volume_scene(fog, camera, {Rgb(1.0F)}, Ground{Rgb(0.99F)});
   const Picture picture = render_volume(scene, ColorMode::kRgb, 512);
   EXPECT_LT((picture.mean[1] - 1) / picture.error[1], -8);
 }
@@ -108,21 +106,19 @@ TEST(Ground, AnAlbedoOnePercentTooSmallIsNoticed) {
 TEST(Ground, StandsUnderAllElseUnlessItIsTold) {
   // A dark cube whose bottom is at -1 hides the sky from straight below and above alike.
   const Camera camera({Vec3d(0, -3, 0.001), Vec3d(0, 0, 0), Vec3d(0, 1, 0), 10}, kSize, kSize);
-  const VolumeMedium dark = cube(Spectrum(50.0F), Spectrum(0.0F));
+  const VolumeMedium dark = cube(Rgb(50.0F), Rgb(0.0F));
   const auto seen = [&](std::optional<double> height) {
-    const Ground ground{Spectrum(1.0F), height};
-    return render_volume(make_volume_scene(dark, camera, {Spectrum(1.0F)}, ground), ColorMode::kRgb,
-                         16)
+    const Ground ground{Rgb(1.0F), height};
+    return render_volume(make_volume_scene(dark, camera, {Rgb(1.0F)}, ground), ColorMode::kRgb, 16)
         .mean[0];
   };
   EXPECT_NEAR(seen({}), 1, 1e-6);  // the underside of the plane, between camera and cube
   EXPECT_NEAR(seen(-5), 0, 1e-6);  // behind the camera
-  EXPECT_THROW(make_volume_scene(dark, camera, {}, Ground{Spectrum(1.5F)}), Error);
+  EXPECT_THROW(make_volume_scene(dark, camera, {}, Ground{Rgb(1.5F)}), Error);
 }
 
 double covered(const Camera& camera) {
-  const PathScene scene =
-      make_volume_scene(cube(Spectrum(1e4F), Spectrum(0.0F)), camera, {Spectrum(1.0F)});
+  const PathScene scene = make_volume_scene(cube(Rgb(1e4F), Rgb(0.0F)), camera, {Rgb(1.0F)});
   const Picture picture = render_volume(scene, ColorMode::kRgb, 256);
   return 1 - picture.mean[0];
 }
@@ -150,8 +146,7 @@ TEST(VolumeCamera, SeesTheEdgesOfAMedium) {
   around.screen_window = {-kHalfWidth, kHalfWidth, -0.5, 0.5};
   const View view{Vec3d(9, 0, 9), Vec3d(0)};
   const Camera camera(around, world_from_camera(view), kSize, kSize);
-  const PathScene scene =
-      make_volume_scene(cube(Spectrum(1.0F), Spectrum(0.0F)), camera, {Spectrum(1.0F)});
+  const PathScene scene = make_volume_scene(cube(Rgb(1.0F), Rgb(0.0F)), camera, {Rgb(1.0F)});
   const double beside = 2 * (kHalfWidth - kHalfDiagonal);
   const double expected = (beside + 1 - std::exp(-2 * kHalfDiagonal)) / (2 * kHalfWidth);
   expect_mean("cube", render_volume(scene, ColorMode::kRgb, 1024), {expected, expected, expected},
@@ -166,8 +161,7 @@ TEST(VolumeCamera, SeesAMediumAsFarAsItsFilterReaches) {
   OrthographicCamera strip;
   strip.screen_window = {-0.5, 0.5, -kHalfVoxel / 4, kHalfVoxel / 4};
   const Camera camera(strip, along_x, 4, 4);
-  const PathScene scene =
-      make_volume_scene(cube(Spectrum(1e4F), Spectrum(0.0F)), camera, {Spectrum(1.0F)});
+  const PathScene scene = make_volume_scene(cube(Rgb(1e4F), Rgb(0.0F)), camera, {Rgb(1.0F)});
   for (const Interpolation interpolation :
        {Interpolation::kNearest, Interpolation::kTrilinear, Interpolation::kStochastic}) {
     RenderSettings settings;
@@ -203,14 +197,14 @@ TEST(VolumeCamera, ASphericalOneHasItsTargetInTheMiddleAndTheHorizonLevel) {
 TEST(VolumeWavelengths, CloseAFurnace) {
   const Camera camera({Vec3d(3, 1, 5), Vec3d(0), Vec3d(0, 1, 0), 30}, kSize, kSize);
   for (const char* tracker : {"delta", "spectral"}) {
-    VolumeMedium fog = cube(Spectrum(0.5F), Spectrum(1, 3, 0.3F));
+    VolumeMedium fog = cube(Rgb(0.5F), Rgb(1, 3, 0.3F));
     std::vector<Component> components = fog.medium->components();
-    components[0].emission = Spectrum(1.0F);
+    components[0].emission = Rgb(1.0F);
     fog.medium = std::make_shared<const Medium>(std::move(components));
     RenderSettings settings;
     settings.samples = 512;
     settings.walk.tracker = tracker;
-    const PathScene scene = make_volume_scene(fog, camera, {Spectrum(1.0F)});
+    const PathScene scene = make_volume_scene(fog, camera, {Rgb(1.0F)});
     expect_mean(tracker, picture_of(render_scene(scene, ColorMode::kSpectral, settings)), {1, 1, 1},
                 {.absolute = 1e-4, .largest_relative_error = 3e-3});
   }
@@ -221,8 +215,7 @@ TEST(VolumeWavelengths, CloseAFurnace) {
 TEST(VolumeWavelengths, SeeGreyAsColoursDo) {
   const Camera camera({Vec3d(0, 0, 400), Vec3d(0), Vec3d(0, 1, 0), 0.1}, 4, 4);
   for (const ColorMode mode : kColorModes) {
-    const PathScene scene =
-        make_volume_scene(cube(Spectrum(0.5F), Spectrum(0.0F)), camera, {Spectrum(2.0F)});
+    const PathScene scene = make_volume_scene(cube(Rgb(0.5F), Rgb(0.0F)), camera, {Rgb(2.0F)});
     const double expected = 2 * std::exp(-1.0);
     expect_mean(name_of(mode), render_volume(scene, mode, 4096), {expected, expected, expected},
                 {.absolute = 2e-4, .largest_relative_error = 0.02});
@@ -261,22 +254,22 @@ TEST(SceneOptions, TheEnvironmentReplacesLightsFromAllAroundAndTheSunIsAdded) {
   };
   EXPECT_NEAR(mean({}), 7, 1e-5);
   BuildOptions options;
-  options.surroundings.environment = Spectrum(0.5F);
+  options.surroundings.environment = Rgb(0.5F);
   EXPECT_NEAR(mean(options), 0.5, 1e-6);
   options = {};
-  options.ground = Ground{Spectrum(0.25F), -8};
-  options.surroundings.environment = Spectrum(2.0F);
+  options.ground = Ground{Rgb(0.25F), -8};
+  options.surroundings.environment = Rgb(2.0F);
   // The camera looks at the horizon.
   EXPECT_NEAR(mean(options), 0.5 * (2 + 0.5), 0.02);
-  options.surroundings = {{}, Sun({.elevation = 30, .irradiance = Spectrum(4.0F)}, UpAxis::kY)};
+  options.surroundings = {{}, Sun({.elevation = 30, .irradiance = Rgb(4.0F)}, UpAxis::kY)};
   const double lit = 0.25 * (7 + 4 * 0.5 / std::numbers::pi);
   EXPECT_NEAR(mean(options), 0.5 * (7 + lit), 0.06);
 }
 
 TEST(SceneOptions, FillInWhatMediaLeaveOpen) {
   BuildOptions options;
-  options.sigma_a = Spectrum(0.25F);
-  options.sigma_s = Spectrum(0.5F);
+  options.sigma_a = Rgb(0.25F);
+  options.sigma_s = Rgb(0.5F);
   options.phase = PhaseFunction::henyey_greenstein(0.7F);
   options.super_voxel = 4;
   const auto medium = [&](const std::string& parameters) {

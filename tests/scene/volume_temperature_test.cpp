@@ -40,7 +40,7 @@ std::array<RunningStatistics, 3> seen_face_on(OpticalProperties optics, const ch
   volumes[0].densities.push_back(*glowing_cube(1));
   // The field holds degrees of another scale.
   volumes[0].temperature = glowing_cube(static_cast<float>((kHotKelvins - 300) / 2), 8);
-  optics.albedo = Spectrum(0.0F);
+  optics.albedo = Rgb(0.0F);
   optics.temperature_scale = 2;
   optics.temperature_offset = -150;
   volumes[0].optics = std::move(optics);
@@ -82,7 +82,7 @@ TEST(VolumeTemperature, AHotCubeIsABlackBodySeenThroughItsOwnExtinction) {
 
 TEST(VolumeTemperature, TheEmittedRadianceIsMultiplied) {
   OpticalProperties optics;
-  optics.emission = Spectrum(0.5F, 0.0F, 2.0F);
+  optics.emission = Rgb(0.5F, 0.0F, 2.0F);
   const auto plain = seen_face_on({}, "delta");
   const auto scaled = seen_face_on(optics, "delta");
   EXPECT_NEAR(scaled[0].mean() / plain[0].mean(), 0.5, 1e-5);

@@ -139,8 +139,8 @@ PathSample any_sample(RandomStream& random) {
 
 LayerSample any_layers(RandomStream& random) {
   LayerSample layers;
-  for (Spectrum* part : {&layers.normal, &layers.position, &layers.transmittance,
-                         &layers.background, &layers.unscattered, &layers.at_most_once}) {
+  for (Rgb* part : {&layers.normal, &layers.position, &layers.transmittance, &layers.background,
+                    &layers.unscattered, &layers.at_most_once}) {
     *part = any_sample(random).radiance;
   }
   return layers;
@@ -158,7 +158,8 @@ TEST(Film, PartsMergeToTheSameBits) {
         RandomStream random(5, static_cast<uint32_t>(pixel), sample, 0);
         const PathSample path = any_sample(random);
         film.add(pixel, path, any_layers(random));
-        film.add_spectrum(pixel, wavelengths, Channels(random.uniform(), 2, 3, random.uniform()));
+        film.add_spectrum(pixel, wavelengths,
+                          SampledSpectrum(random.uniform(), 2, 3, random.uniform()));
       }
     }
   };
@@ -204,8 +205,8 @@ TEST(Film, GathersSpectralRadianceInBuckets) {
   Film film(PixelWindow::whole(2, 1), {}, buckets);
   EXPECT_EQ(Film::bytes_per_pixel({}, buckets), Film::bytes_per_pixel({}) + 96);
   const std::array<double, 4> wavelengths = {420, 499.9, 800, 399.9};
-  film.add_spectrum(1, wavelengths, Channels(1, 4, 7, 100));
-  film.add_spectrum(1, std::span(wavelengths).first(1), Channels(4, 9, 9, 9));
+  film.add_spectrum(1, wavelengths, SampledSpectrum(1, 4, 7, 100));
+  film.add_spectrum(1, std::span(wavelengths).first(1), SampledSpectrum(4, 9, 9, 9));
   const Image image = film.to_image();
   const std::vector<std::string> expected = {"R",
                                              "G",

@@ -26,7 +26,7 @@ Vec3d mean_rgb(const SpectrumTable& table, const Radiance& radiance) {
   return sum / kSamples;
 }
 
-Vec3d vector_of(const Channels& rgb) { return {rgb[0], rgb[1], rgb[2]}; }
+Vec3d vector_of(const SampledSpectrum& rgb) { return {rgb[0], rgb[1], rgb[2]}; }
 
 void expect_near(const Vec3d& value, const Vec3d& expected, double tolerance) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(value[i], expected[i], tolerance) << "channel " << i;
@@ -38,14 +38,14 @@ TEST(SpectrumTable, LightComesBackAsTheColourThatItWasMadeOf) {
   const SpectrumId light =
       table.add(RgbSpectrum::illuminant(color, table.space()), SpectrumRole::kIlluminant);
   expect_near(mean_rgb(table, [&](const SpectrumValues& v) { return v[light]; }), color, 2e-3);
-  const Channels rgb = table.in_rgb()[light];
+  const SampledSpectrum rgb = table.in_rgb()[light];
   expect_near(Vec3d(rgb[0], rgb[1], rgb[2]), color, 2e-3);
   EXPECT_EQ(rgb[3], 0);
 }
 
 TEST(SpectrumTable, InRgbColoursAreExactlyWhatTheyAreGivenAs) {
   const Vec3d color(0.32, 0.48, 0.8);
-  const Channels expected(0.32F, 0.48F, 0.8F);
+  const SampledSpectrum expected(0.32F, 0.48F, 0.8F);
   const RgbColorSpace& srgb = rgb_color_space("srgb");
   SpectrumTable table(srgb);
   const SpectrumId light =
@@ -81,7 +81,7 @@ TEST(SpectrumTable, InRgbColoursOfAnotherSpaceAreConverted) {
     // A surface is lit by the white of the film.
     const Vec3d white = of_film.from_xyz(space.to_xyz(Vec3d(1)));
     expect_near(vector_of(rgb[paint]), converted / white, name == "aces-cg" ? 0.01 : 1e-7);
-    EXPECT_EQ(rgb[grey], Channels(0.3F, 0.3F, 0.3F));
+    EXPECT_EQ(rgb[grey], SampledSpectrum(0.3F, 0.3F, 0.3F));
   }
 }
 
@@ -117,7 +117,7 @@ TEST(SpectrumTable, AReflectanceHasItsColourUnderTheWhiteOfTheSpace) {
   const SpectrumId white = table.add(table.space().illuminant(), SpectrumRole::kIlluminant);
   expect_near(mean_rgb(table, [&](const SpectrumValues& v) { return v[paint] * v[white]; }), color,
               2e-3);
-  const Channels rgb = table.in_rgb()[paint];
+  const SampledSpectrum rgb = table.in_rgb()[paint];
   expect_near(Vec3d(rgb[0], rgb[1], rgb[2]), color, 2e-3);
 }
 
@@ -131,7 +131,7 @@ TEST(SpectrumTable, ColoursOfTexturesComeBackAndGreysAreConstant) {
          {Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1), Vec3f(0.2, 0.5, 0.9)}) {
       expect_near(mean_rgb(table, [&](const SpectrumValues& v) { return v.illuminant(color); }),
                   table.space().from_xyz(of_textures.to_xyz(Vec3d(color))), 5e-3);
-      const Channels rgb = table.in_rgb().illuminant(color);
+      const SampledSpectrum rgb = table.in_rgb().illuminant(color);
       expect_near(Vec3d(rgb[0], rgb[1], rgb[2]),
                   table.space().from_xyz(of_textures.to_xyz(Vec3d(color))), 1e-5);
       expect_near(
@@ -150,17 +150,17 @@ TEST(SpectrumTable, ColoursOfTexturesComeBackAndGreysAreConstant) {
 TEST(SpectrumTable, ARefractiveIndexIsTheSameInRGB) {
   SpectrumTable table(rgb_color_space("srgb"));
   const SpectrumId glass = table.add(named_spectrum("glass-BK7"), SpectrumRole::kIndex);
-  const Channels rgb = table.in_rgb()[glass];
+  const SampledSpectrum rgb = table.in_rgb()[glass];
   EXPECT_NEAR(rgb[0], 1.5167, 5e-4);  // Schott's n_d, at 587.6 nm, is 1.5168
   EXPECT_EQ(rgb[0], rgb[1]);
   EXPECT_FALSE(table.is_constant(glass));
   EXPECT_TRUE(table.is_constant(table.add(1.5, SpectrumRole::kIndex)));
 }
 
-TEST(Channels, LargestMagnitudeKeepsNaN) {
-  EXPECT_EQ(largest_magnitude(Channels(1, -3, 2)), 3);
-  EXPECT_TRUE(std::isnan(largest_magnitude(Channels(std::nanf(""), 1, 2))));
-  EXPECT_TRUE(std::isnan(largest_magnitude(Channels(1, 2, 3, std::nanf("")))));
+TEST(SampledSpectrum, LargestMagnitudeKeepsNaN) {
+  EXPECT_EQ(largest_magnitude(SampledSpectrum(1, -3, 2)), 3);
+  EXPECT_TRUE(std::isnan(largest_magnitude(SampledSpectrum(std::nanf(""), 1, 2))));
+  EXPECT_TRUE(std::isnan(largest_magnitude(SampledSpectrum(1, 2, 3, std::nanf("")))));
 }
 
 }  // namespace

@@ -11,12 +11,12 @@
 
 #include "freepath/report/page.h"
 #include "freepath/study/comparison_report.h"
-#include "tests/study/small_subject.h"
+#include "tests/study/small_target.h"
 
 namespace freepath {
 namespace {
 
-using testing::small_subject;
+using testing::small_target;
 
 std::vector<Configuration> trackers(const std::vector<std::string>& names) {
   std::vector<Configuration> configurations;
@@ -52,7 +52,7 @@ const ConfigurationResult& result_of(const Comparison& comparison, const std::st
 // march fails.
 TEST(Comparison, TellsBiasedMethodsFromUnbiasedOnes) {
   const Comparison comparison =
-      compare(small_subject(),
+      compare(small_target(),
               settings_for({"delta", "weighted-delta", "decomposition", "weighted-decomposition",
                             "spectral-decomposition", "ray-marching:step=24"}));
   for (const ConfigurationResult& result : comparison.configurations) {
@@ -68,8 +68,8 @@ TEST(Comparison, TellsBiasedMethodsFromUnbiasedOnes) {
 
 TEST(Comparison, HoldsForChromaticMedia) {
   const Comparison comparison = compare(
-      small_subject(true), settings_for({"delta", "spectral", "spectral-decomposition",
-                                         "hero-wavelength", "per-wavelength", "multi-volume"}));
+      small_target(true), settings_for({"delta", "spectral", "spectral-decomposition",
+                                        "hero-wavelength", "per-wavelength", "multi-volume"}));
   for (const ConfigurationResult& result : comparison.configurations) {
     EXPECT_EQ(result.verdict, BiasVerdict::kPasses) << result.name << ": " << result.bias.worst();
   }
@@ -81,7 +81,7 @@ TEST(Comparison, StatesErrorsThatAgreeWithVariances) {
   settings.repeats = 16;
   settings.samples = 256;
   settings.reference.samples = 128;  // would add an eighth, were its variance not taken off
-  const Comparison comparison = compare(small_subject(), settings);
+  const Comparison comparison = compare(small_target(), settings);
   for (const ConfigurationResult& result : comparison.configurations) {
     const Interval mse = result.over_runs([](const ComparisonRun& run) { return run.error.mse; });
     const Interval variance = result.over_runs([](const ComparisonRun& run) {
@@ -94,12 +94,12 @@ TEST(Comparison, StatesErrorsThatAgreeWithVariances) {
 
 TEST(Comparison, MeasuresTheSameAgainUpToTimes) {
   ComparisonSettings settings = settings_for({"delta", "weighted-delta"});
-  const Comparison first = compare(small_subject(), settings);
+  const Comparison first = compare(small_target(), settings);
   settings.render.threads = 1;
   settings.render.batch = 512;
-  const Comparison second = compare(small_subject(), settings);
+  const Comparison second = compare(small_target(), settings);
   settings.seed = 1;
-  const Comparison other = compare(small_subject(), settings);
+  const Comparison other = compare(small_target(), settings);
   for (std::size_t i = 0; i < 2; ++i) {
     const ConfigurationResult& a = first.configurations[i];
     EXPECT_EQ(a.together.mean, second.configurations[i].together.mean);
@@ -115,9 +115,9 @@ TEST(Comparison, MeasuresTheSameAgainUpToTimes) {
 TEST(Comparison, FindsEfficienciesAgain) {
   ComparisonSettings settings =
       settings_for({"delta", "weighted-delta:rate-scale=4", "per-wavelength"});
-  const Comparison first = compare(small_subject(), settings);
+  const Comparison first = compare(small_target(), settings);
   settings.seed = 77;
-  const Comparison second = compare(small_subject(), settings);
+  const Comparison second = compare(small_target(), settings);
   const auto lookups = [](const ComparisonRun& run) {
     return static_cast<double>(run.free_paths.lookups + run.shadow_rays.lookups);
   };
@@ -136,7 +136,7 @@ TEST(Comparison, FindsEfficienciesAgain) {
 
 TEST(Comparison, StatesEfficiencyByTimeOfTheProcessor) {
   const Comparison comparison =
-      compare(small_subject(), settings_for({"delta", "weighted-delta:rate-scale=4"}));
+      compare(small_target(), settings_for({"delta", "weighted-delta:rate-scale=4"}));
   const ConfigurationResult& result = comparison.configurations[1];
   std::vector<double> ratios;
   for (std::size_t i = 0; i < result.runs.size(); ++i) {
@@ -150,7 +150,7 @@ TEST(Comparison, StatesEfficiencyByTimeOfTheProcessor) {
 // Four times the rate means about four times the look-ups in the same flights.
 TEST(Comparison, CountsWork) {
   const Comparison comparison =
-      compare(small_subject(), settings_for({"delta", "weighted-delta:rate-scale=4"}));
+      compare(small_target(), settings_for({"delta", "weighted-delta:rate-scale=4"}));
   const auto lookups = [](const ComparisonRun& run) {
     return static_cast<double>(run.free_paths.lookups) / static_cast<double>(run.camera_samples);
   };
@@ -171,7 +171,7 @@ TEST(Comparison, RefusesWhatCannotRunBeforeItWorks) {
   ComparisonSettings settings = settings_for({"delta", "closed-form"});
   bool worked = false;
   try {
-    compare(small_subject(), settings, [&](const ComparisonProgress&) { return worked = true; });
+    compare(small_target(), settings, [&](const ComparisonProgress&) { return worked = true; });
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()).rfind("closed-form: ", 0), 0U) << error.what();
@@ -179,15 +179,15 @@ TEST(Comparison, RefusesWhatCannotRunBeforeItWorks) {
   EXPECT_FALSE(worked);
   settings = settings_for({"ray-marching"});
   settings.may_interpolate = false;
-  EXPECT_THROW(compare(small_subject(), settings), Error);
+  EXPECT_THROW(compare(small_target(), settings), Error);
   settings = settings_for({});
-  EXPECT_THROW(compare(small_subject(), settings), Error);
+  EXPECT_THROW(compare(small_target(), settings), Error);
 }
 
 TEST(Comparison, EndsWhenItIsAsked) {
   const ComparisonSettings settings = settings_for({"delta"});
   EXPECT_THROW(
-      compare(small_subject(), settings,
+      compare(small_target(), settings,
               [](const ComparisonProgress& progress) { return progress.step == "reference"; }),
       Interrupted);
 }
@@ -201,8 +201,8 @@ class ReferenceTest : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  Reference get(const Subject& subject, const ReferencePlan& plan) const {
-    return get_reference(subject, plan, {}, {}, {});
+  Reference get(const RenderTarget& target, const ReferencePlan& plan) const {
+    return get_reference(target, plan, {}, {}, {});
   }
 
   std::filesystem::path folder_;
@@ -210,28 +210,28 @@ class ReferenceTest : public ::testing::Test {
 
 TEST_F(ReferenceTest, IsKeptAndFoundByItsContent) {
   ReferencePlan plan{.file = {}, .time = 0, .samples = 8, .cache = folder_ / "kept"};
-  const Reference made = get(small_subject(), plan);
+  const Reference made = get(small_target(), plan);
   EXPECT_EQ(made.origin.rfind("made with delta", 0), 0U) << made.origin;
-  const Reference found = get(small_subject(), plan);
+  const Reference found = get(small_target(), plan);
   EXPECT_EQ(found.origin.rfind("found in", 0), 0U) << found.origin;
   EXPECT_EQ(found.estimates.mean, made.estimates.mean);
   EXPECT_EQ(found.estimates.variance, made.estimates.variance);
-  // Another subject, another budget, another size: another reference.
-  EXPECT_EQ(get(small_subject(true), plan).origin.rfind("made", 0), 0U);
-  EXPECT_EQ(get(small_subject(false, 32, 24), plan).origin.rfind("made", 0), 0U);
+  // Another target, another budget, another size: another reference.
+  EXPECT_EQ(get(small_target(true), plan).origin.rfind("made", 0), 0U);
+  EXPECT_EQ(get(small_target(false, 32, 24), plan).origin.rfind("made", 0), 0U);
   plan.samples = 9;
-  EXPECT_EQ(get(small_subject(), plan).origin.rfind("made", 0), 0U);
+  EXPECT_EQ(get(small_target(), plan).origin.rfind("made", 0), 0U);
 }
 
 TEST_F(ReferenceTest, OfAnotherSizeIsRefused) {
   const std::string file = folder_ / "reference.exr";
   const ReferencePlan plan{.file = {}, .time = 0, .samples = 2, .cache = {}};
-  write_exr(file, to_image(get(small_subject(), plan).estimates));
+  write_exr(file, to_image(get(small_target(), plan).estimates));
   ReferencePlan given;
   given.file = file;
-  EXPECT_EQ(get(small_subject(), given).origin, file);
+  EXPECT_EQ(get(small_target(), given).origin, file);
   try {
-    get(small_subject(false, 32, 24), given);
+    get(small_target(false, 32, 24), given);
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("--size 64x48"), std::string::npos) << error.what();
@@ -241,7 +241,7 @@ TEST_F(ReferenceTest, OfAnotherSizeIsRefused) {
 TEST_F(ReferenceTest, WithoutVarianceIsToldOf) {
   const std::string file = folder_ / "reference.exr";
   const ReferencePlan plan{.file = {}, .time = 0, .samples = 64, .cache = {}};
-  Image image = to_image(get(small_subject(), plan).estimates);
+  Image image = to_image(get(small_target(), plan).estimates);
   Image colour{.width = image.width, .height = image.height, .channels = {"R", "G", "B"}};
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
     const float* const values = image.values.data() + pixel * image.channels.size();
@@ -251,7 +251,7 @@ TEST_F(ReferenceTest, WithoutVarianceIsToldOf) {
   ComparisonSettings settings = settings_for({"delta"});
   settings.samples = 8;
   settings.reference.file = file;
-  const Comparison comparison = compare(small_subject(), settings);
+  const Comparison comparison = compare(small_target(), settings);
   EXPECT_FALSE(comparison.references[0].variance_known);
   EXPECT_NE(findings_of(comparison).back().find("variance is not known"), std::string::npos);
 }
@@ -261,8 +261,8 @@ TEST(ComparisonReport, SaysTheSameInAllForms) {
   ComparisonSettings settings = settings_for({"delta", "weighted-delta:rate-scale=2,roulette=0"});
   settings.configurations[1].tracker = "weighted-delta:rate-scale=2";
   settings.samples = 16;
-  const Comparison comparison = compare(small_subject(), settings);
-  const ReportContext context{.subject = "ball <1>",
+  const Comparison comparison = compare(small_target(), settings);
+  const ReportContext context{.target = "ball <1>",
                               .command = "freepath compare ball.vdb",
                               .machine = "a machine",
                               .date = "2026-11-22"};

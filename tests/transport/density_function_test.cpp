@@ -44,7 +44,7 @@ DensityFunction wave() {
   return function;
 }
 
-Medium wave_medium(const Spectrum& sigma_a, const Spectrum& sigma_s) {
+Medium wave_medium(const Rgb& sigma_a, const Rgb& sigma_s) {
   return Medium(
       {{.density = make_function_field("wave", wave()), .sigma_a = sigma_a, .sigma_s = sigma_s}});
 }
@@ -66,8 +66,8 @@ bool refuses(const Medium& medium, const WalkSettings& settings, std::string_vie
 }
 
 TEST(DensityFunction, EveryTrackerEscapesAsOftenAsItsIntegralSays) {
-  const Spectrum sigma_a(0.2F, 0.1F, 0.5F);
-  const Spectrum sigma_s(0.8F, 0.4F, 0.7F);
+  const Rgb sigma_a(0.2F, 0.1F, 0.5F);
+  const Rgb sigma_s(0.8F, 0.4F, 0.7F);
   const Medium medium = wave_medium(sigma_a, sigma_s);
   const double threshold = family_wise_threshold(1e-3, tracker_infos().size() * 3);
   for (const MethodInfo& info : tracker_infos()) {
@@ -97,7 +97,7 @@ TEST(DensityFunction, EveryTrackerEscapesAsOftenAsItsIntegralSays) {
 }
 
 TEST(DensityFunction, EveryEstimatorFindsItsTransmittance) {
-  const Medium medium = wave_medium(Spectrum(0.3F), Spectrum(0.7F));
+  const Medium medium = wave_medium(Rgb(0.3F), Rgb(0.7F));
   for (const MethodInfo& info : transmittance_infos()) {
     WalkSettings settings;
     settings.transmittance = info.name;
@@ -112,7 +112,7 @@ TEST(DensityFunction, EveryEstimatorFindsItsTransmittance) {
 }
 
 TEST(DensityFunction, AutoChoosesATrackerAndSamplesWithIt) {
-  const Medium medium = wave_medium(Spectrum(0.0F), Spectrum(1.0F));
+  const Medium medium = wave_medium(Rgb(0.0F), Rgb(1.0F));
   WalkSettings settings;
   settings.tracker = "auto";
   WalkStatistics statistics;

@@ -24,9 +24,9 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline Medium medium_of(std::shared_ptr<Field> field, float sigma_t, int super_voxel = 4) {
   Component component;
   component.density = std::move(field);
-  component.sigma_a = Spectrum(0.25F * sigma_t);
-  component.sigma_s = Spectrum(0.75F * sigma_t);
-  component.emission = Spectrum(1.0F);
+  component.sigma_a = Rgb(0.25F * sigma_t);
+  component.sigma_s = Rgb(0.75F * sigma_t);
+  component.emission = Rgb(1.0F);
   return Medium({component}, super_voxel);
 }
 

@@ -99,8 +99,8 @@ ChiSquare test_distances(const DistanceCase& test, double planted = 1) {
   const TestRay ray = test_rays()[test.ray];
   Component component;
   component.density = lumpy_field();
-  component.sigma_a = Spectrum(0.5F);
-  component.sigma_s = Spectrum(1.5F);
+  component.sigma_a = Rgb(0.5F);
+  component.sigma_s = Rgb(1.5F);
   const RayIntegrals exact = integrate(Medium({component}), ray, test.interpolation);
   component.sigma_a *= static_cast<float>(planted);
   component.sigma_s *= static_cast<float>(planted);
@@ -203,14 +203,14 @@ std::vector<Component> two_components(const Planted& planted = {}) {
   const float scale = 0.8F * planted.extinction;
   std::vector<Component> components(2);
   components[0].density = lumpy_field(0);
-  components[0].sigma_s = (Spectrum(0.8F, 0.5F, 0.3F) + Spectrum(planted.split)) * scale;
-  components[0].sigma_a = (Spectrum(0.2F, 0.5F, 0.7F) - Spectrum(planted.split)) * scale;
-  components[0].emission = Spectrum(1, 2, 0.5F) * planted.emission;
+  components[0].sigma_s = (Rgb(0.8F, 0.5F, 0.3F) + Rgb(planted.split)) * scale;
+  components[0].sigma_a = (Rgb(0.2F, 0.5F, 0.7F) - Rgb(planted.split)) * scale;
+  components[0].emission = Rgb(1, 2, 0.5F) * planted.emission;
   components[0].phase = PhaseFunction::henyey_greenstein(0.8F);
   components[1].density = lumpy_field(1);
-  components[1].sigma_s = Spectrum(0.4F, 0.9F, 0.7F) * scale;
-  components[1].sigma_a = Spectrum(0.6F, 0.1F, 0.3F) * scale;
-  components[1].emission = Spectrum(0.3F, 1, 4) * planted.emission;
+  components[1].sigma_s = Rgb(0.4F, 0.9F, 0.7F) * scale;
+  components[1].sigma_a = Rgb(0.6F, 0.1F, 0.3F) * scale;
+  components[1].emission = Rgb(0.3F, 1, 4) * planted.emission;
   components[1].phase = PhaseFunction::henyey_greenstein(-0.2F);
   return components;
 }

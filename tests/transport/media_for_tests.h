@@ -84,8 +84,8 @@ struct FixtureA {
   /// 1+x = 1(1-x) + 2x, 2-x = 2(1-x) + 1x, 0.5+x² = 0.5(1-x²) + 1.5x².
   static Medium medium(int super_voxel = 64, int voxels = kVoxels) {
     std::vector<Component> components;
-    const auto add = [&](auto density, const Spectrum& sigma_a, const Spectrum& sigma_s,
-                         const Spectrum& emission) {
+    const auto add = [&](auto density, const Rgb& sigma_a, const Rgb& sigma_s,
+                         const Rgb& emission) {
       Component component;
       Matrix4d index_to_world;
       index_to_world.setScale(Vec3d(1.0 / voxels, 1, 1));
@@ -99,16 +99,15 @@ struct FixtureA {
       component.emission = emission;
       components.push_back(component);
     };
-    const Spectrum none(0.0F);
-    add([](double x) { return r(x); }, none, Spectrum(6, 0, 1), none);
-    add([](double x) { return r(x) * r(x); }, none, Spectrum(0, 2.1F, 0), none);
-    add([](double) { return 1.0; }, none, Spectrum(0, 0.9F, 0), none);
-    add([](double x) { return r(x) * (1 - x); }, Spectrum(0.5F, 1.5F, 0), none, Spectrum(1, 2, 0));
-    add([](double x) { return r(x) * x; }, Spectrum(0.5F, 1.5F, 0), none, Spectrum(2, 1, 0));
-    add([](double x) { return std::sqrt(r(x)) * (1 - x * x); }, Spectrum(0, 0, 3), none,
-        Spectrum(0, 0, 0.5F));
-    add([](double x) { return std::sqrt(r(x)) * x * x; }, Spectrum(0, 0, 3), none,
-        Spectrum(0, 0, 1.5F));
+    const Rgb none(0.0F);
+    add([](double x) { return r(x); }, none, Rgb(6, 0, 1), none);
+    add([](double x) { return r(x) * r(x); }, none, Rgb(0, 2.1F, 0), none);
+    add([](double) { return 1.0; }, none, Rgb(0, 0.9F, 0), none);
+    add([](double x) { return r(x) * (1 - x); }, Rgb(0.5F, 1.5F, 0), none, Rgb(1, 2, 0));
+    add([](double x) { return r(x) * x; }, Rgb(0.5F, 1.5F, 0), none, Rgb(2, 1, 0));
+    add([](double x) { return std::sqrt(r(x)) * (1 - x * x); }, Rgb(0, 0, 3), none,
+        Rgb(0, 0, 0.5F));
+    add([](double x) { return std::sqrt(r(x)) * x * x; }, Rgb(0, 0, 3), none, Rgb(0, 0, 1.5F));
     return Medium(std::move(components), super_voxel);
   }
 };

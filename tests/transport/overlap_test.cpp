@@ -34,18 +34,18 @@ Matrix4d second_transform() {
 std::vector<Component> overlapping(std::shared_ptr<Field> second, bool grey, float planted = 1) {
   std::vector<Component> components(2);
   components[0].density = lumpy_field(0);
-  components[0].sigma_s = Spectrum(0.8F, 0.5F, 0.3F) * planted;
-  components[0].sigma_a = Spectrum(0.2F, 0.5F, 0.7F) * planted;
-  components[0].emission = Spectrum(1, 2, 0.5F);
+  components[0].sigma_s = Rgb(0.8F, 0.5F, 0.3F) * planted;
+  components[0].sigma_a = Rgb(0.2F, 0.5F, 0.7F) * planted;
+  components[0].emission = Rgb(1, 2, 0.5F);
   components[0].phase = PhaseFunction::henyey_greenstein(0.8F);
   components[1].density = std::move(second);
-  components[1].sigma_s = Spectrum(0.4F, 0.9F, 0.7F) * planted;
-  components[1].sigma_a = Spectrum(0.6F, 0.1F, 0.3F) * planted;
-  components[1].emission = Spectrum(0.3F, 1, 4);
+  components[1].sigma_s = Rgb(0.4F, 0.9F, 0.7F) * planted;
+  components[1].sigma_a = Rgb(0.6F, 0.1F, 0.3F) * planted;
+  components[1].emission = Rgb(0.3F, 1, 4);
   components[1].phase = PhaseFunction::henyey_greenstein(-0.2F);
   if (!grey) {
-    components[0].sigma_s *= Spectrum(1, 0.5F, 0.25F);
-    components[1].sigma_a *= Spectrum(0.5F, 1.5F, 1);
+    components[0].sigma_s *= Rgb(1, 0.5F, 0.25F);
+    components[1].sigma_a *= Rgb(0.5F, 1.5F, 1);
   }
   return components;
 }

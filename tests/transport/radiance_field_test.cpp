@@ -33,7 +33,7 @@ float steep(float value, int channel) {
 
 /// Two components: one glows by a temperature that stands otherwise in the world, by a table; the
 /// other by a field of radiance for each channel.
-/// Channels; no walk is compiled for so many, so that one of more repeats some.
+/// SampledSpectrum; no walk is compiled for so many, so that one of more repeats some.
 constexpr int kCount = 5;
 
 struct GlowingMedium {
@@ -78,8 +78,8 @@ struct GlowingMedium {
     std::vector<Component> components(2);
     for (int k = 0; k < 2; ++k) {
       components[k].density = fields[k];
-      components[k].sigma_a = Spectrum(1.1F);
-      components[k].sigma_s = Spectrum(0.5F);
+      components[k].sigma_a = Rgb(1.1F);
+      components[k].sigma_s = Rgb(0.5F);
     }
     return Medium(std::move(components), 4);
   }

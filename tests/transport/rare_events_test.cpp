@@ -134,8 +134,8 @@ Component layers(int count, const std::function<float(int, const Vec3i&)>& of, f
   Component component;
   component.density = make_field(Vec3i(0), Vec3i(8 * count - 1, 7, 7),
                                  [&](const Vec3i& p) { return of(p.x / 8, p); });
-  component.sigma_a = Spectrum(sigma_a);
-  component.sigma_s = Spectrum(sigma_s);
+  component.sigma_a = Rgb(sigma_a);
+  component.sigma_s = Rgb(sigma_s);
   return component;
 }
 

@@ -86,8 +86,8 @@ TEST(ClosedForm, RegularTrackingDrawsTheSameFlights) {
 TEST(ClosedForm, TransmittanceIsTheExponentialInEveryChannel) {
   Component component;
   component.density = box_field();
-  component.sigma_a = Spectrum(0.1F, 0.02F, 0);
-  component.sigma_s = Spectrum(0, 0.03F, 0.3F);
+  component.sigma_a = Rgb(0.1F, 0.02F, 0);
+  component.sigma_s = Rgb(0, 0.03F, 0.3F);
   const Medium medium({component});
   for (const char* method : {"closed-form", "regular"}) {
     const Flown flown = transmit(medium, method, Interpolation::kNearest, rays_across(3));
@@ -176,9 +176,9 @@ Medium noise_of_depth(double depth, const TestRay& ray, Interpolation interpolat
   const auto field = lumpy_field();
   Component component;
   component.density = field;
-  component.sigma_s = Spectrum(
-      static_cast<float>(depth / optical_depth(*field, Vec3d(ray.origin), Vec3d(ray.direction),
-                                               ray.t_max, interpolation)));
+  component.sigma_s =
+      Rgb(static_cast<float>(depth / optical_depth(*field, Vec3d(ray.origin), Vec3d(ray.direction),
+                                                   ray.t_max, interpolation)));
   return Medium({component}, 8);
 }
 
@@ -213,7 +213,7 @@ TEST(Regular, ReadsEachVoxelOnTheWayOnce) {
   std::vector<Component> components(3);
   for (int k = 0; k < 3; ++k) {
     components[k].density = make_field(Vec3i(0), Vec3i(9, 0, 0), [](auto&) { return 1.0F; });
-    components[k].sigma_s = Spectrum(k == 2 ? 0.0F : 1.0F);  // the third is nothing to anyone
+    components[k].sigma_s = Rgb(k == 2 ? 0.0F : 1.0F);  // the third is nothing to anyone
   }
   const Medium medium(components, 4);
   const Flown flown = transmit(medium, "regular", Interpolation::kNearest,
@@ -320,9 +320,9 @@ TEST(PowerSeries, OnePercentOfTheExtinctionIsNoticed) {
 TEST(ReferenceMethods, FlightsGoOnFromTheWeightsOfTheirRays) {
   Component component;
   component.density = lumpy_field();
-  component.sigma_a = Spectrum(0.5F, 0.3F, 0.1F);
-  component.sigma_s = Spectrum(0.5F, 0.7F, 0.9F);
-  component.emission = Spectrum(1, 2, 3);
+  component.sigma_a = Rgb(0.5F, 0.3F, 0.1F);
+  component.sigma_s = Rgb(0.5F, 0.7F, 0.9F);
+  component.emission = Rgb(1, 2, 3);
   const Medium medium({component});
   constexpr std::size_t kPaths = 200;
   constexpr float kWeights[] = {0.5F, 2, -3};

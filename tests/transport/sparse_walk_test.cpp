@@ -53,14 +53,14 @@ const std::vector<Twins>& all_twins() {
 }
 
 /// Two components of the same voxels, twice the one, with the extinction of 1 in channel 0.
-Medium medium_of_twins(const Twins& twins, const Spectrum& color, float absorbed = 0) {
+Medium medium_of_twins(const Twins& twins, const Rgb& color, float absorbed = 0) {
   std::vector<Component> components(2);
   for (std::size_t k = 0; k < 2; ++k) {
     components[k].density = field_of_voxels(two_clouds(twins.apart));
-    const Spectrum sigma_t = color * (k == 0 ? 0.25F : 0.75F);
+    const Rgb sigma_t = color * (k == 0 ? 0.25F : 0.75F);
     components[k].sigma_a = sigma_t * absorbed;
     components[k].sigma_s = sigma_t * (1 - absorbed);
-    components[k].emission = Spectrum(2);
+    components[k].emission = Rgb(2);
   }
   return Medium(std::move(components));
 }
@@ -74,7 +74,7 @@ double depth_of_cloud(const Twins& twins, Interpolation interpolation) {
 
 TEST(SparseWalk, TransmittancesOfPartsMultiply) {
   for (const Twins& twins : all_twins()) {
-    const Medium medium = medium_of_twins(twins, Spectrum(1));
+    const Medium medium = medium_of_twins(twins, Rgb(1));
     ASSERT_EQ(medium.parts().size(), 2);
     for (const MethodInfo& info : transmittance_infos()) {
       for (const Interpolation interpolation : kInterpolations) {
@@ -145,11 +145,10 @@ TEST(SparseWalk, FlightsGoOnFromPartToPart) {
       {"decomposition", false}, {"weighted-decomposition", false}, {"regular", false},
       {"spectral", true},       {"spectral-decomposition", true},  {"hero-wavelength", true}};
   constexpr float kAbsorbed = 0.3F;
-  const Spectrum kColor(1, 0.5F, 0.25F);
+  const Rgb kColor(1, 0.5F, 0.25F);
   for (const Twins& twins : all_twins()) {
     for (const TrackerCase& test : kCases) {
-      const Medium medium =
-          medium_of_twins(twins, test.chromatic ? kColor : Spectrum(1), kAbsorbed);
+      const Medium medium = medium_of_twins(twins, test.chromatic ? kColor : Rgb(1), kAbsorbed);
       WalkSettings settings;
       settings.tracker = test.tracker;
       settings.interpolation = Interpolation::kTrilinear;
@@ -177,7 +176,7 @@ TEST(SparseWalk, FlightsGoOnFromPartToPart) {
 // A field of radiance that is as sparse: 3 in and around the first cloud, 5 around the second.
 TEST(SparseWalk, RadianceIsReadInEveryPart) {
   const Twins& twins = all_twins()[1];
-  const Medium medium = medium_of_twins(twins, Spectrum(1), 0.5F);
+  const Medium medium = medium_of_twins(twins, Rgb(1), 0.5F);
   std::vector<PlacedVoxel> glow;
   for (int x = -4; x < 16; ++x) {
     for (int y = -4; y < 16; ++y) {
@@ -281,7 +280,7 @@ TEST(SparseWalk, RandomVoxelsAreMetByEveryRayThatPassesThem) {
 }
 
 TEST(SparseWalk, VoxelsFarApartAreNotHomogeneous) {
-  const Medium medium = medium_of_twins(all_twins()[0], Spectrum(1));
+  const Medium medium = medium_of_twins(all_twins()[0], Rgb(1));
   WalkSettings settings;
   settings.transmittance = "closed-form";
   settings.interpolation = Interpolation::kNearest;

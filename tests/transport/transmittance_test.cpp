@@ -67,7 +67,7 @@ double unit_depth(int ray, Interpolation interpolation) {
   const double depth = unit_depth(thickness.ray, interpolation);
   Component component;
   component.density = lumpy_field();
-  component.sigma_s = Spectrum(static_cast<float>(thickness.depth / depth * planted));
+  component.sigma_s = Rgb(static_cast<float>(thickness.depth / depth * planted));
   const Medium medium({component}, thickness.super_voxel);
   WalkSettings settings;
   settings.transmittance = estimator.name;
@@ -143,7 +143,7 @@ TEST(Transmittance, IsMultipliedByTheWeightsThatRaysBring) {
   constexpr std::size_t kRays = 500;
   Component component;
   component.density = lumpy_field();
-  component.sigma_s = Spectrum(0.5F, 1.5F, 4.0F);
+  component.sigma_s = Rgb(0.5F, 1.5F, 4.0F);
   const Medium medium({component});
   const RayStream fresh = repeat_ray(test_rays()[0], kRays, 0);
   RayStream weighted = fresh;

@@ -23,7 +23,7 @@ namespace {
 Medium homogeneous_box(float sigma_t) {
   Component component;
   component.density = make_field(Vec3i(-30), Vec3i(29), [](const Vec3i&) { return 1.0F; });
-  component.sigma_s = Spectrum(sigma_t);
+  component.sigma_s = Rgb(sigma_t);
   return Medium({component}, 16);
 }
 
@@ -117,9 +117,9 @@ const Medium& colourful_medium() {
     std::vector<Component> components(2);
     for (int k = 0; k < 2; ++k) {
       components[k].density = lumpy_field(k);
-      components[k].sigma_s = Spectrum(0.75F, 0.5F, 0.25F);
-      components[k].sigma_a = Spectrum(0.25F, 0.5F, 0.75F);
-      components[k].emission = Spectrum(1, 2, float(3 + k));
+      components[k].sigma_s = Rgb(0.75F, 0.5F, 0.25F);
+      components[k].sigma_a = Rgb(0.25F, 0.5F, 0.75F);
+      components[k].emission = Rgb(1, 2, float(3 + k));
     }
     return Medium(std::move(components), 8);
   }();
@@ -356,7 +356,7 @@ TEST(Walker, SeedsMakeOtherFlights) {
 TEST(Walker, RefusesAllChannelsWhereTheExtinctionIsChromatic) {
   Component component;
   component.density = lumpy_field();
-  component.sigma_s = Spectrum(1, 2, 3);
+  component.sigma_s = Rgb(1, 2, 3);
   const Medium medium({component});
   EXPECT_THROW(Walker(medium, WalkSettings{}), Error);
   for (int channel = 0; channel < kChannels; ++channel) {

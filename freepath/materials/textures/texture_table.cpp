@@ -60,7 +60,7 @@ class TextureEvaluation {
   float value(FloatTextureId id) {
     return known(floats_, id.index, [&] { return float_of(table_.floats_[id.index]); });
   }
-  Channels value(SpectrumTextureId id) {
+  SampledSpectrum value(SpectrumTextureId id) {
     return known(spectrum_values_, id.index,
                  [&] { return spectrum_of(table_.spectra_[id.index]); });
   }
@@ -68,7 +68,7 @@ class TextureEvaluation {
     if (const float* const constant = std::get_if<float>(&input)) return *constant;
     return value(*std::get_if<FloatTextureId>(&input));
   }
-  Channels value(const SpectrumInput& input) {
+  SampledSpectrum value(const SpectrumInput& input) {
     if (const auto* const constant = std::get_if<SpectrumId>(&input)) return (*spectra_)[*constant];
     return value(*std::get_if<SpectrumTextureId>(&input));
   }
@@ -93,7 +93,7 @@ class TextureEvaluation {
   float float_of(const FloatTexture& texture) {
     return std::visit([&](const auto& kind) { return float_of(kind); }, texture);
   }
-  Channels spectrum_of(const SpectrumTexture& texture) {
+  SampledSpectrum spectrum_of(const SpectrumTexture& texture) {
     return std::visit([&](const auto& kind) { return spectrum_of(kind); }, texture);
   }
 
@@ -117,22 +117,22 @@ class TextureEvaluation {
     return compound<float>(texture);
   }
 
-  Channels spectrum_of(const SpectrumId& constant) { return (*spectra_)[constant]; }
-  Channels spectrum_of(const ImageMapTexture& texture) {
+  SampledSpectrum spectrum_of(const SpectrumId& constant) { return (*spectra_)[constant]; }
+  SampledSpectrum spectrum_of(const ImageMapTexture& texture) {
     const TextureCoordinates at = mapped(texture.mapping, point_);
     Vec3f rgb = texture.image->color(at.s, at.t, texture.wrap);
     for (int i = 0; i < 3; ++i) rgb[i] = std::max(0.0F, scaled(texture, rgb[i]));
     return spectra_->reflectance(rgb);
   }
-  Channels spectrum_of(const MarbleTexture& texture) {
+  SampledSpectrum spectrum_of(const MarbleTexture& texture) {
     const Vec3d at = texture.mapping(point_) * texture.scale;
     const double bent =
         at.y + double{texture.variation} * fractal_motion(at, texture.omega, texture.octaves);
     return spectra_->reflectance(marble_color(static_cast<float>(0.5 + 0.5 * std::sin(bent))));
   }
   template <class Kind>
-  Channels spectrum_of(const Kind& texture) {
-    return compound<Channels>(texture);
+  SampledSpectrum spectrum_of(const Kind& texture) {
+    return compound<SampledSpectrum>(texture);
   }
 
   template <class Value, class Input>
@@ -176,7 +176,7 @@ class TextureEvaluation {
   const SpectrumValues* const spectra_;
   const bool remembers_;
   std::unordered_map<uint32_t, float> floats_;
-  std::unordered_map<uint32_t, Channels> spectrum_values_;
+  std::unordered_map<uint32_t, SampledSpectrum> spectrum_values_;
   uint64_t evaluated_ = 0;
 };
 
@@ -241,10 +241,11 @@ float TextureTable::evaluate_float(FloatTextureId id, const SurfacePoint& point,
   return value;
 }
 
-Channels TextureTable::evaluate_spectrum(SpectrumTextureId id, const SurfacePoint& point,
-                                         const SpectrumValues& spectra, uint64_t* evaluated) const {
+SampledSpectrum TextureTable::evaluate_spectrum(SpectrumTextureId id, const SurfacePoint& point,
+                                                const SpectrumValues& spectra,
+                                                uint64_t* evaluated) const {
   TextureEvaluation evaluation(*this, point, &spectra, spectrum_work_[id.index] > kFewEvaluations);
-  const Channels value = evaluation.value(id);
+  const SampledSpectrum value = evaluation.value(id);
   if (evaluated != nullptr) *evaluated += evaluation.evaluated();
   return value;
 }
@@ -261,8 +262,8 @@ float TextureTable::evaluate(const FloatInput& input, const SurfacePoint& point)
   return evaluate_float(*std::get_if<FloatTextureId>(&input), point);
 }
 
-Channels TextureTable::evaluate(const SpectrumInput& input, const SurfacePoint& point,
-                                const SpectrumValues& spectra) const {
+SampledSpectrum TextureTable::evaluate(const SpectrumInput& input, const SurfacePoint& point,
+                                       const SpectrumValues& spectra) const {
   if (const auto* const constant = std::get_if<SpectrumId>(&input)) return spectra[*constant];
   return evaluate_spectrum(*std::get_if<SpectrumTextureId>(&input), point, spectra);
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/geometry/surface_point.h"
 #include "freepath/materials/textures/texture.h"
 #include "freepath/spectra/spectrum_table.h"
@@ -36,16 +36,17 @@ class TextureTable {
                        uint64_t* evaluated = nullptr) const;
   /// The value at a point of a surface in the channels of a path. Colours of images are those of
   /// SpectrumValues::reflectance.
-  Channels evaluate_spectrum(SpectrumTextureId id, const SurfacePoint& point,
-                             const SpectrumValues& spectra, uint64_t* evaluated = nullptr) const;
+  SampledSpectrum evaluate_spectrum(SpectrumTextureId id, const SurfacePoint& point,
+                                    const SpectrumValues& spectra,
+                                    uint64_t* evaluated = nullptr) const;
 
   /// The value of an input that is the same everywhere.
   std::optional<float> constant(const FloatInput& input) const;
 
   /// Those of a constant or a texture.
   float evaluate(const FloatInput& input, const SurfacePoint& point) const;
-  Channels evaluate(const SpectrumInput& input, const SurfacePoint& point,
-                    const SpectrumValues& spectra) const;
+  SampledSpectrum evaluate(const SpectrumInput& input, const SurfacePoint& point,
+                           const SpectrumValues& spectra) const;
 
   std::size_t float_count() const { return floats_.size(); }
   std::size_t spectrum_count() const { return spectra_.size(); }

@@ -55,7 +55,7 @@ struct ToDistribution {
     return at_location(location, [&] { return SpectralDistribution(named_spectrum(value.name)); });
   }
 
-  SpectralDistribution operator()(const std::shared_ptr<const SampledSpectrum>& value) const {
+  SpectralDistribution operator()(const std::shared_ptr<const SpectrumSamples>& value) const {
     const std::vector<double>& values = value->values;
     for (const double sample : values) {
       if (!std::isfinite(sample) || sample < 0) {

@@ -38,7 +38,7 @@ struct BuildOptions {
   PeriodicSides sides = {};           ///< Along which it repeats.
   std::optional<CameraChange> camera = {};
   /// Of media whose statements say nothing of it [1/m per density].
-  std::optional<Spectrum> sigma_a = {}, sigma_s = {};
+  std::optional<Rgb> sigma_a = {}, sigma_s = {};
   std::optional<PhaseFunction> phase = {};
 };
 

@@ -96,7 +96,7 @@ class MediumReader {
     component.scale = nonnegative("scale", 1);
   }
 
-  static SpectralDistribution from_rgb(const Spectrum& rgb) {
+  static SpectralDistribution from_rgb(const Rgb& rgb) {
     return RgbSpectrum::unbounded(Vec3d(rgb), rgb_color_space("srgb"));
   }
 
@@ -311,7 +311,7 @@ class MediumReader {
                                           const SceneMediumComponent& values, bool clipped) const {
     Component component;
     component.density = density;
-    component.sigma_s = Spectrum(static_cast<float>(largest_ * values.scale));
+    component.sigma_s = Rgb(static_cast<float>(largest_ * values.scale));
     Medium medium({component}, context_.options.super_voxel);
     float densest = 0;
     for (const WalkPart& part : medium.parts()) {

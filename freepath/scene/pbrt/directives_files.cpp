@@ -57,7 +57,7 @@ void SceneParser::import_file(const SourceLocation& location) {
   state_ = state;
 }
 
-std::shared_ptr<const SampledSpectrum> SceneParser::read_spectrum(const std::string& name,
+std::shared_ptr<const SpectrumSamples> SceneParser::read_spectrum(const std::string& name,
                                                                   const SourceLocation& location) {
   const std::filesystem::path path =
       locate_file(reader_, name, *location.file, tokens_.main_file());

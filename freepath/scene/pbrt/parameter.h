@@ -60,7 +60,7 @@ struct NamedSpectrum {
 };
 
 /// Samples to be connected by straight lines.
-struct SampledSpectrum {
+struct SpectrumSamples {
   std::vector<double> wavelengths;  ///< Increasing [nm].
   std::vector<double> values;       ///< As many.
 };
@@ -68,7 +68,7 @@ struct SampledSpectrum {
 /// A spectrum in any of the ways in which a scene can give one. Samples are shared, since many
 /// parameters may name one file; they are never null.
 using SpectrumValue =
-    std::variant<RgbValue, BlackbodyValue, NamedSpectrum, std::shared_ptr<const SampledSpectrum>>;
+    std::variant<RgbValue, BlackbodyValue, NamedSpectrum, std::shared_ptr<const SpectrumSamples>>;
 
 /// Whether renderers know a spectrum of this name. Anything else that a "spectrum" parameter names
 /// is a file.

@@ -170,9 +170,9 @@ void ValueReader::require_multiple(std::size_t count) const {
 }
 
 /// @throws Error unless wavelengths are positive and increase
-std::shared_ptr<const SampledSpectrum> make_samples(std::span<const double> pairs,
+std::shared_ptr<const SpectrumSamples> make_samples(std::span<const double> pairs,
                                                     const SourceLocation& location) {
-  auto spectrum = std::make_shared<SampledSpectrum>();
+  auto spectrum = std::make_shared<SpectrumSamples>();
   double last = 0;
   for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
     if (!(pairs[i] > last)) {
@@ -280,7 +280,7 @@ std::shared_ptr<const Parameter> parse_option(TokenStream& tokens,
   return parse_values(tokens, context, {type, words.back()}, place);
 }
 
-std::shared_ptr<const SampledSpectrum> parse_spectrum_file(Lexer& lexer) {
+std::shared_ptr<const SpectrumSamples> parse_spectrum_file(Lexer& lexer) {
   std::vector<double> pairs;
   const SourceLocation start = lexer.location(lexer.peek());
   while (lexer.peek().kind != TokenKind::kEnd) {

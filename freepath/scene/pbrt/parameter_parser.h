@@ -16,7 +16,7 @@ struct ParameterContext {
   ColorSpace color_space = ColorSpace::kSrgb;  ///< Of rgb values.
   /// Reads the spectrum in a file that a parameter names.
   /// @throws Error, beginning with the place given, if there is no such file or it is no spectrum
-  std::function<std::shared_ptr<const SampledSpectrum>(const std::string&, const SourceLocation&)>
+  std::function<std::shared_ptr<const SpectrumSamples>(const std::string&, const SourceLocation&)>
       read_spectrum;
 };
 
@@ -33,6 +33,6 @@ std::shared_ptr<const Parameter> parse_option(TokenStream& tokens, const Paramet
 
 /// The numbers of a spectrum file, pairs of wavelength [nm] and value.
 /// @throws Error, beginning "file:line:column: "
-std::shared_ptr<const SampledSpectrum> parse_spectrum_file(Lexer& lexer);
+std::shared_ptr<const SpectrumSamples> parse_spectrum_file(Lexer& lexer);
 
 }  // namespace freepath

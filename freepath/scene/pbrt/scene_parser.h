@@ -85,7 +85,7 @@ class SceneParser {
   PbrtEntity expect_entity(std::string_view directive, const SourceLocation& location,
                            AttributeTarget target);
   ParameterContext context();
-  std::shared_ptr<const SampledSpectrum> read_spectrum(const std::string& name,
+  std::shared_ptr<const SpectrumSamples> read_spectrum(const std::string& name,
                                                        const SourceLocation& location);
 
   // directives_files.cpp
@@ -174,7 +174,7 @@ class SceneParser {
 
   TokenStream tokens_;
   std::size_t files_read_ = 0;
-  std::map<std::string, std::shared_ptr<const SampledSpectrum>> spectra_;
+  std::map<std::string, std::shared_ptr<const SpectrumSamples>> spectra_;
 
   std::map<std::string, int, std::less<>> material_names_, medium_names_, object_names_;
   std::map<std::string, int, std::less<>> float_texture_names_, spectrum_texture_names_;

@@ -1,4 +1,4 @@
-#include "freepath/paths/path_colors.h"
+#include "freepath/paths/sample_spectra.h"
 
 #include <tbb/task_arena.h>
 
@@ -64,8 +64,8 @@ double shift_of(uint64_t seed) {
 
 }  // namespace
 
-ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths,
-                           const WalkSettings& walk, bool chooses_transmittance)
+WavelengthSampler::WavelengthSampler(const PathScene& scene, ColorMode mode, int wavelengths,
+                                     const WalkSettings& walk, bool chooses_transmittance)
     : scene_(scene),
       mode_(mode),
       wavelengths_(wavelengths),
@@ -102,14 +102,14 @@ ColorFactory::ColorFactory(const PathScene& scene, ColorMode mode, int wavelengt
                 return medium.is_grey(*scene.spectra);
               });
   rgb_ = mode == ColorMode::kRgb ? make(first)
-                                 : std::make_shared<const PathColors>(
+                                 : std::make_shared<const SampleSpectra>(
                                        *this, scene.spectra->seen_in_rgb(),
                                        std::vector<std::shared_ptr<const MediumWalkers>>{});
   sets_per_block_ = choose_sets_per_block();
   make_guides();
 }
 
-uint32_t ColorFactory::choose_sets_per_block() const {
+uint32_t WavelengthSampler::choose_sets_per_block() const {
   if (mode_ == ColorMode::kRgb) return 1;
   const double pixels = double(scene_.camera->width()) * scene_.camera->height();
   const int nodes = depends_on_wavelengths_ && pixels < kManyPixels ? kFewestNodes : kNodes;
@@ -120,7 +120,7 @@ uint32_t ColorFactory::choose_sets_per_block() const {
   return sets;
 }
 
-uint32_t ColorFactory::set_of(uint32_t pixel, uint32_t sample) const {
+uint32_t WavelengthSampler::set_of(uint32_t pixel, uint32_t sample) const {
   if (sets_per_block_ == 1) return sample;
   const uint32_t block = sample / sets_per_block_;
   // Of a stream that nothing else uses.
@@ -129,7 +129,7 @@ uint32_t ColorFactory::set_of(uint32_t pixel, uint32_t sample) const {
   return block * sets_per_block_ + (bits >> (32 - std::countr_zero(sets_per_block_)));
 }
 
-void ColorFactory::find_weight_growth(const SpectrumValues& first) {
+void WavelengthSampler::find_weight_growth(const SpectrumValues& first) {
   for (const SceneMedium& medium : scene_.media) {
     // Wavelengths of other samples may differ more than those of the first.
     const bool known = mode_ == ColorMode::kRgb || medium.is_grey(*scene_.spectra);
@@ -140,12 +140,12 @@ void ColorFactory::find_weight_growth(const SpectrumValues& first) {
   }
 }
 
-BoundMedium ColorFactory::bound_in_rgb(std::size_t medium) const {
+BoundMedium WavelengthSampler::bound_in_rgb(std::size_t medium) const {
   if (mode_ == ColorMode::kRgb) return constant_[medium]->bound;
   return scene_.media[medium].bind(scene_.spectra->in_rgb());
 }
 
-void ColorFactory::make_guides() {
+void WavelengthSampler::make_guides() {
   // What is made for R, G and B serves any wavelengths: a guide need not be exact, and where it
   // does not lead, paths still go.
   for (std::size_t i = 0; i < scene_.media.size(); ++i) {
@@ -161,7 +161,7 @@ void ColorFactory::make_guides() {
   }
 }
 
-SpectrumValues ColorFactory::spectra_of_set(uint32_t set) const {
+SpectrumValues WavelengthSampler::spectra_of_set(uint32_t set) const {
   const double node =
       static_cast<double>(set % sets_per_block_) + van_der_corput(set / sets_per_block_);
   double u = shift_of(walk_.seed) + node / (static_cast<double>(sets_per_block_) * wavelengths_);
@@ -170,7 +170,7 @@ SpectrumValues ColorFactory::spectra_of_set(uint32_t set) const {
       u, WavelengthDensity::kVisible, static_cast<std::size_t>(wavelengths_)));
 }
 
-std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
+std::shared_ptr<const MediumWalkers> WavelengthSampler::make_walkers(
     std::size_t medium, const SpectrumValues& spectra) const {
   auto result = std::make_shared<MediumWalkers>();
   result->bound = scene_.media[medium].bind(spectra);
@@ -178,7 +178,7 @@ std::shared_ptr<const MediumWalkers> ColorFactory::make_walkers(
   return result;
 }
 
-void ColorFactory::add_walkers(MediumWalkers& walkers, bool is_homogeneous) const {
+void WavelengthSampler::add_walkers(MediumWalkers& walkers, bool is_homogeneous) const {
   WalkSettings settings = walk_;
   // Which has no variance where the least extinction is all there is.
   if (chooses_transmittance_ && is_homogeneous) settings.transmittance = "residual-ratio";
@@ -193,7 +193,7 @@ void ColorFactory::add_walkers(MediumWalkers& walkers, bool is_homogeneous) cons
   }
 }
 
-std::shared_ptr<const Medium> ColorFactory::combined_medium(
+std::shared_ptr<const Medium> WavelengthSampler::combined_medium(
     MediumId combination, const std::vector<std::shared_ptr<const Medium>>& media) const {
   {
     const std::shared_lock lock(mutex_);
@@ -208,8 +208,8 @@ std::shared_ptr<const Medium> ColorFactory::combined_medium(
   return medium;
 }
 
-std::shared_ptr<const MediumWalkers> ColorFactory::make_combination(
-    MediumId combination, const PathColors& colors) const {
+std::shared_ptr<const MediumWalkers> WavelengthSampler::make_combination(
+    MediumId combination, const SampleSpectra& colors) const {
   auto result = std::make_shared<MediumWalkers>();
   std::vector<std::shared_ptr<const Medium>> media;
   std::string names;
@@ -236,8 +236,8 @@ std::shared_ptr<const MediumWalkers> ColorFactory::make_combination(
   return result;
 }
 
-std::shared_ptr<const MediumWalkers> ColorFactory::combine(MediumId combination,
-                                                           const PathColors& colors) const {
+std::shared_ptr<const MediumWalkers> WavelengthSampler::combine(MediumId combination,
+                                                                const SampleSpectra& colors) const {
   const std::vector<MediumId> members = combinations_.members(combination);
   const bool is_constant = std::all_of(members.begin(), members.end(), [&](MediumId member) {
     return constant_[member] != nullptr;
@@ -255,7 +255,7 @@ std::shared_ptr<const MediumWalkers> ColorFactory::combine(MediumId combination,
   return constant_combinations_.try_emplace(combination, std::move(made)).first->second;
 }
 
-const MediumWalkers& PathColors::combination(MediumId medium) const {
+const MediumWalkers& SampleSpectra::combination(MediumId medium) const {
   {
     const std::shared_lock lock(mutex_);
     const auto found = combinations_.find(medium);
@@ -266,15 +266,15 @@ const MediumWalkers& PathColors::combination(MediumId medium) const {
   return *combinations_.try_emplace(medium, std::move(made)).first->second;
 }
 
-std::shared_ptr<const PathColors> ColorFactory::make(SpectrumValues spectra) const {
+std::shared_ptr<const SampleSpectra> WavelengthSampler::make(SpectrumValues spectra) const {
   std::vector<std::shared_ptr<const MediumWalkers>> media;
   for (std::size_t i = 0; i < scene_.media.size(); ++i) {
     media.push_back(constant_[i] ? constant_[i] : make_walkers(i, spectra));
   }
-  return std::make_shared<const PathColors>(*this, std::move(spectra), std::move(media));
+  return std::make_shared<const SampleSpectra>(*this, std::move(spectra), std::move(media));
 }
 
-std::shared_ptr<const PathColors> ColorFactory::colors_of_set(uint32_t set) const {
+std::shared_ptr<const SampleSpectra> WavelengthSampler::colors_of_set(uint32_t set) const {
   return mode_ == ColorMode::kRgb ? rgb_ : make(spectra_of_set(set));
 }
 

@@ -16,8 +16,8 @@ std::string random_word();
 /// @throws Error that names the file and what to do
 void check_file_place(const std::string& path);
 
-/// How an AsideFile is kept until it is complete.
-enum class AsideKind {
+/// How an AtomicFile is kept until it is complete.
+enum class AtomicKind {
   kNameless,  ///< Without a name where the file system can do that: it is gone with the process.
   kNamed      ///< Under a short name that nobody can foresee, as where it can't.
 };
@@ -26,14 +26,14 @@ enum class AsideKind {
 /// never sees half of it, and an old one survives a failure. It is opened at once, so that what
 /// would hinder it is told before its contents are made, and is new: nothing that somebody else has
 /// put into the folder is opened or followed.
-class AsideFile {
+class AtomicFile {
  public:
   /// @throws Error as check_file_place, and where the folder takes no file
-  explicit AsideFile(const std::string& path, AsideKind kind = AsideKind::kNameless);
-  AsideFile(AsideFile&& other) noexcept;
-  AsideFile(const AsideFile&) = delete;
-  AsideFile& operator=(const AsideFile&) = delete;
-  ~AsideFile();
+  explicit AtomicFile(const std::string& path, AtomicKind kind = AtomicKind::kNameless);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
 
   /// The target as it was given, for messages.
   const std::string& path() const { return path_; }

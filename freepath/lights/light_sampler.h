@@ -20,14 +20,14 @@ struct LightChoice {
 /// Draws lights by their power, if they are few; else by what they may contribute at a point: down
 /// a binary tree, choosing at each node between both groups of lights [Conty18]. The probability of
 /// any light is known everywhere, and is positive where it shines. Immutable.
-class LightChooser {
+class LightSampler {
  public:
   /// More lights than these make a tree.
   static constexpr std::size_t kFewLights = 16;
 
-  LightChooser() = default;
+  LightSampler() = default;
   /// @param lights those with a power of 0 are never drawn
-  explicit LightChooser(const std::vector<LightBounds>& lights);
+  explicit LightSampler(const std::vector<LightBounds>& lights);
 
   LightChoice choose(const Vec3f& position, float u) const;
   float probability(const Vec3f& position, uint32_t light) const;

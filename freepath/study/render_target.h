@@ -11,7 +11,7 @@
 namespace freepath {
 
 /// A picture that can be rendered in more than one way.
-struct Subject {
+struct RenderTarget {
   std::string name;  ///< For people: "cloud.vdb".
   /// Of everything that the exact picture depends on: the same digest, the same picture.
   std::string digest;

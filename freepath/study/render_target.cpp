@@ -1,4 +1,4 @@
-#include "freepath/study/subject.h"
+#include "freepath/study/render_target.h"
 
 #include <algorithm>
 

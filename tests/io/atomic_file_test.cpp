@@ -1,4 +1,4 @@
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -31,7 +31,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 std::string message_for(const fs::path& place) {
   try {
-    const AsideFile file(place.string());
+    const AtomicFile file(place.string());
   } catch (const Error& error) {
     return error.what();
   }
@@ -44,16 +44,16 @@ void expect_refused(const fs::path& place, const std::string& reason) {
   EXPECT_NE(message.find(reason), std::string::npos) << message;
 }
 
-class AsideFileTest : public ::testing::TestWithParam<AsideKind> {
+class AtomicFileTest : public ::testing::TestWithParam<AtomicKind> {
  protected:
-  AsideFile open(const fs::path& place) const { return AsideFile(place.string(), GetParam()); }
+  AtomicFile open(const fs::path& place) const { return AtomicFile(place.string(), GetParam()); }
   TemporaryFolder folder_;
 };
 
-TEST_P(AsideFileTest, AppearsWholeOrNotAtAll) {
+TEST_P(AtomicFileTest, AppearsWholeOrNotAtAll) {
   const fs::path target = folder_ / "a.txt";
   {
-    AsideFile file = open(target);
+    AtomicFile file = open(target);
     file.write("first");
     EXPECT_FALSE(fs::exists(target));
     file.write("one");  // begins anew
@@ -61,15 +61,15 @@ TEST_P(AsideFileTest, AppearsWholeOrNotAtAll) {
     EXPECT_EQ(text_of(target), "one");
   }
   {
-    AsideFile file = open(target);
+    AtomicFile file = open(target);
     std::ofstream(file.name()) << "two";  // as libraries do it
     EXPECT_EQ(text_of(target), "one");
   }
   EXPECT_EQ(text_of(target), "one");
   {
-    AsideFile file = open(target);
+    AtomicFile file = open(target);
     std::ofstream(file.name()) << "two";
-    AsideFile moved = std::move(file);
+    AtomicFile moved = std::move(file);
     moved.replace_target();
   }
   EXPECT_EQ(text_of(target), "two");
@@ -81,10 +81,10 @@ TEST_P(AsideFileTest, AppearsWholeOrNotAtAll) {
   EXPECT_EQ(status.st_mode & 0777U, 0666U & ~mask);
 }
 
-TEST_P(AsideFileTest, NamesMayBeAsLongAsTheFileSystemHasThem) {
+TEST_P(AtomicFileTest, NamesMayBeAsLongAsTheFileSystemHasThem) {
   for (const int length : {249, 255}) {
     const fs::path target = folder_ / std::string(length, 'a');
-    AsideFile file = open(target);
+    AtomicFile file = open(target);
     file.write("text");
     file.replace_target();
     EXPECT_EQ(text_of(target), "text");
@@ -92,11 +92,11 @@ TEST_P(AsideFileTest, NamesMayBeAsLongAsTheFileSystemHasThem) {
   expect_refused(folder_ / std::string(256, 'a'), "name too long");
 }
 
-TEST_P(AsideFileTest, LinksStandForTheirTargets) {
+TEST_P(AtomicFileTest, LinksStandForTheirTargets) {
   fs::create_directory(folder_ / "far");
   fs::create_symlink("far/a.txt", folder_ / "link");  // to what is not there yet
   for (const char* text : {"one", "two"}) {
-    AsideFile file = open(folder_ / "link");
+    AtomicFile file = open(folder_ / "link");
     file.write(text);
     file.replace_target();
     EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
@@ -106,7 +106,7 @@ TEST_P(AsideFileTest, LinksStandForTheirTargets) {
   expect_refused(folder_ / "loop", "leads to itself");
 }
 
-TEST_P(AsideFileTest, AFullDiskIsAnErrorAndLeavesTheOldFile) {
+TEST_P(AtomicFileTest, AFullDiskIsAnErrorAndLeavesTheOldFile) {
   const fs::path target = folder_ / "a.txt";
   std::ofstream(target) << "old";
   rlimit before{};
@@ -115,34 +115,34 @@ TEST_P(AsideFileTest, AFullDiskIsAnErrorAndLeavesTheOldFile) {
   small.rlim_cur = 4;
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &small);
-  AsideFile file = open(target);
+  AtomicFile file = open(target);
   EXPECT_THROW(file.write("much more"), Error);
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(text_of(target), "old");
 }
 
-TEST_P(AsideFileTest, WhatTakesItsPlaceMeanwhileStaysAndIsTold) {
+TEST_P(AtomicFileTest, WhatTakesItsPlaceMeanwhileStaysAndIsTold) {
   const fs::path target = folder_ / "a.txt";
-  AsideFile file = open(target);
+  AtomicFile file = open(target);
   file.write("text");
   fs::create_directories(target / "inner");
   EXPECT_THROW(file.replace_target(), Error);
   EXPECT_TRUE(fs::exists(target / "inner"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, AsideFileTest,
-                         ::testing::Values(AsideKind::kNameless, AsideKind::kNamed));
+INSTANTIATE_TEST_SUITE_P(Kinds, AtomicFileTest,
+                         ::testing::Values(AtomicKind::kNameless, AtomicKind::kNamed));
 
-TEST(AsideFile, HasNoNameOrOneThatIsNewAndShort) {
+TEST(AtomicFile, HasNoNameOrOneThatIsNewAndShort) {
   const TemporaryFolder folder;
   const fs::path victim = folder / "victim";
   std::ofstream(victim) << "precious";
   {
-    const AsideFile file((folder / "a.txt").string());
+    const AtomicFile file((folder / "a.txt").string());
     EXPECT_EQ(files_in(folder.path()).size(), 1U);  // where the file system has O_TMPFILE
   }
-  AsideFile file((folder / std::string(255, 'a')).string(), AsideKind::kNamed);
+  AtomicFile file((folder / std::string(255, 'a')).string(), AtomicKind::kNamed);
   fs::path name;
   for (const fs::path& found : files_in(folder.path())) {
     if (found != victim) name = found;
@@ -159,7 +159,7 @@ TEST(AsideFile, HasNoNameOrOneThatIsNewAndShort) {
   EXPECT_FALSE(fs::exists(folder / std::string(255, 'a')));
 }
 
-TEST(AsideFile, PlacesWhereNoneCanStandAreRefusedAtOnce) {
+TEST(AtomicFile, PlacesWhereNoneCanStandAreRefusedAtOnce) {
   const TemporaryFolder folder;
   expect_refused(folder.path(), "is a directory");
   expect_refused(folder / "none" / "a.txt", "does not exist; create it");

@@ -30,14 +30,14 @@ struct MediumWalkers {
   std::vector<Origin> origins;  ///< Of the components of a combination; else none.
 };
 
-class ColorFactory;
+class WavelengthSampler;
 
 /// Paths that share wavelengths: the spectra at them and the walkers of all media.
-class PathColors {
+class SampleSpectra {
  public:
   /// @param factory must outlive this
-  PathColors(const ColorFactory& factory, SpectrumValues values,
-             std::vector<std::shared_ptr<const MediumWalkers>> walkers)
+  SampleSpectra(const WavelengthSampler& factory, SpectrumValues values,
+                std::vector<std::shared_ptr<const MediumWalkers>> walkers)
       : spectra(std::move(values)),
         per_white(1 / sum_of(spectra.illuminant(Vec3f(1)))),
         mean_per_white(per_white * static_cast<float>(spectra.channels())),
@@ -65,7 +65,7 @@ class PathColors {
  private:
   const MediumWalkers& combination(MediumId medium) const;
 
-  const ColorFactory& factory_;
+  const WavelengthSampler& factory_;
   mutable std::shared_mutex mutex_;
   mutable std::map<MediumId, std::shared_ptr<const MediumWalkers>> combinations_;
 };
@@ -78,22 +78,22 @@ class PathColors {
 /// which is random for each pixel: so the wavelengths of 2^k samples of a pixel are equidistant and
 /// pictures have next to no noise of colour, yet pixels are independent but for the error of a
 /// quadrature with K·N nodes. The next block lies between the nodes of the blocks before.
-class ColorFactory {
+class WavelengthSampler {
  public:
   /// @param scene must outlive this
   /// @throws Error as Walker
   /// @param wavelengths of a path in spectral mode, 1 to kMaxChannels
   /// @param chooses_transmittance whether homogeneous media have the estimator that is exact there
   ///   in place of that of `walk`
-  ColorFactory(const PathScene& scene, ColorMode mode, int wavelengths, const WalkSettings& walk,
-               bool chooses_transmittance = false);
+  WavelengthSampler(const PathScene& scene, ColorMode mode, int wavelengths,
+                    const WalkSettings& walk, bool chooses_transmittance = false);
 
   /// Number of the set of wavelengths that a sample has; in R, G, B its own.
   /// @param pixel of the whole picture
   uint32_t set_of(uint32_t pixel, uint32_t sample) const;
   /// Sets of a block, a power of two. Samples [K·b, K·(b + 1)) have sets of the same numbers.
   uint32_t sets_per_block() const { return sets_per_block_; }
-  std::shared_ptr<const PathColors> colors_of_set(uint32_t set) const;
+  std::shared_ptr<const SampleSpectra> colors_of_set(uint32_t set) const;
 
   /// Scatterings in media, by the instructions that walks are taken by.
   const ScatteringKernels& scattering() const { return kernels(walk_.simd).scattering; }
@@ -111,7 +111,7 @@ class ColorFactory {
   }
   /// Whether so much of a medium glows that a guide costs more than it gives. Paths in combinations
   /// do without.
-  bool glow_is_spread(MediumId medium) const {
+  bool emission_is_uniform(MediumId medium) const {
     const auto number = static_cast<std::size_t>(medium);
     return number >= glow_is_spread_.size() || glow_is_spread_[number];
   }
@@ -122,7 +122,7 @@ class ColorFactory {
   MediumId medium_of(const MediaSet& media) const { return combinations_.of(media); }
   /// The walkers of a combination of media, made of those of its media.
   std::shared_ptr<const MediumWalkers> combine(MediumId combination,
-                                               const PathColors& colors) const;
+                                               const SampleSpectra& colors) const;
   /// R, G, B of the scene's spectra: as given where R, G, B is rendered, else as the observer sees
   /// the spectra, so that light may be seen in both ways.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
@@ -135,10 +135,10 @@ class ColorFactory {
                                                     const SpectrumValues& spectra) const;
   void add_walkers(MediumWalkers& walkers, bool is_homogeneous) const;
   std::shared_ptr<const MediumWalkers> make_combination(MediumId combination,
-                                                        const PathColors& colors) const;
+                                                        const SampleSpectra& colors) const;
   std::shared_ptr<const Medium> combined_medium(
       MediumId combination, const std::vector<std::shared_ptr<const Medium>>& media) const;
-  std::shared_ptr<const PathColors> make(SpectrumValues spectra) const;
+  std::shared_ptr<const SampleSpectra> make(SpectrumValues spectra) const;
   void find_weight_growth(const SpectrumValues& first);
   void make_guides();
   SpectrumValues spectra_of_set(uint32_t set) const;
@@ -156,7 +156,7 @@ class ColorFactory {
   WeightGrowth weight_growth_;
   /// Walkers of media that are the same at all wavelengths, null of others.
   std::vector<std::shared_ptr<const MediumWalkers>> constant_;
-  std::shared_ptr<const PathColors> rgb_;
+  std::shared_ptr<const SampleSpectra> rgb_;
   std::vector<std::unique_ptr<const EmissionGuide>> guides_;  // of media
   std::vector<bool> glow_is_spread_;                          // of media
   MediaCombinations combinations_;

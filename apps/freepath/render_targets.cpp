@@ -1,4 +1,4 @@
-#include "apps/freepath/subjects.h"
+#include "apps/freepath/render_targets.h"
 
 #include <fmt/format.h>
 
@@ -58,14 +58,13 @@ std::vector<std::filesystem::path> files_of_options(const PictureOptions& option
   return files;
 }
 
-/// Renders the subject by a scene.
-void set_renderers(Subject& subject, const std::shared_ptr<PathScene>& scene, ColorMode color) {
-  subject.render = [scene, color](const RenderSettings& settings,
-                                  const ProgressFunction& progress) {
+/// Renders the target by a scene.
+void set_renderers(RenderTarget& target, const std::shared_ptr<PathScene>& scene, ColorMode color) {
+  target.render = [scene, color](const RenderSettings& settings, const ProgressFunction& progress) {
     return render_scene(*scene, color, settings, progress);
   };
-  subject.render_reference = [scene, color](const RenderSettings& settings,
-                                            const ProgressFunction& progress) {
+  target.render_reference = [scene, color](const RenderSettings& settings,
+                                           const ProgressFunction& progress) {
     // Put back whatever happens.
     const auto put_back = [&](const SampleKind* kind) { scene->samples = *kind; };
     const SampleKind own = std::exchange(scene->samples, SampleKind::kIndependent);
@@ -74,8 +73,8 @@ void set_renderers(Subject& subject, const std::shared_ptr<PathScene>& scene, Co
   };
 }
 
-LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions& options,
-                                  const PictureSize& size) {
+LoadedTarget load_volume_target(const CLI::App& command, const PictureOptions& options,
+                                const PictureSize& size) {
   check_wavelengths(command, read_color(options, ColorMode::kRgb));
   // All that can be wrong with the options is said before a file is read.
   read_up(options);
@@ -83,18 +82,18 @@ LoadedSubject load_volume_subject(const CLI::App& command, const PictureOptions&
   read_lights(options);
   read_sides(options);
   std::vector<VolumeReport> report;
-  LoadedSubject loaded = subject_of_medium(options,
-                                           make_medium(load_volumes(read_volumes(options), report),
-                                                       options.super_voxel, read_sides(options)),
-                                           size);
+  LoadedTarget loaded = target_of_medium(options,
+                                         make_medium(load_volumes(read_volumes(options), report),
+                                                     options.super_voxel, read_sides(options)),
+                                         size);
   std::vector<std::filesystem::path> files = files_of_options(options);
   files.insert(files.begin(), options.volumes.files.begin(), options.volumes.files.end());
-  loaded.subject.digest = digest_of(command, files);
+  loaded.target.digest = digest_of(command, files);
   return loaded;
 }
 
-LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& options,
-                                 const std::optional<PictureSize>& size) {
+LoadedTarget load_scene_target(const CLI::App& command, const PictureOptions& options,
+                               const std::optional<PictureSize>& size) {
   check_scene_options(command, options);
   ScenePlan plan;
   plan.file = options.volumes.files[0];
@@ -119,7 +118,7 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
   for (const std::string& warning : diagnostics.warnings()) {
     warn("{}", warning);
   }
-  LoadedSubject loaded;
+  LoadedTarget loaded;
   loaded.settings = settle(plan, *built);
   loaded.settings.buckets = {};  // colours are compared
   const Camera& camera = *built->scene.camera;
@@ -131,23 +130,23 @@ LoadedSubject load_scene_subject(const CLI::App& command, const PictureOptions& 
                       ? "media have colour, and surfaces take most of the time"
                       : "media are grey, or there are no surfaces, whose time one path for all "
                         "channels would save";
-  Subject& subject = loaded.subject;
-  subject.name = names_of(options.volumes.files);
+  RenderTarget& target = loaded.target;
+  target.name = names_of(options.volumes.files);
   std::vector<std::filesystem::path> files = files_of_options(options);
   files.insert(files.begin(), built->files.begin(), built->files.end());
-  subject.digest = digest_of(command, files);
+  target.digest = digest_of(command, files);
   const RgbColorSpace& space = built->scene.spectra->space();
-  subject.chromaticities = RgbChromaticities{space.primaries(), space.white()};
-  subject.width = window.width;
-  subject.height = window.height;
-  set_renderers(subject, std::shared_ptr<PathScene>(built, &built->scene), plan.color);
+  target.chromaticities = RgbChromaticities{space.primaries(), space.white()};
+  target.width = window.width;
+  target.height = window.height;
+  set_renderers(target, std::shared_ptr<PathScene>(built, &built->scene), plan.color);
   return loaded;
 }
 
 }  // namespace
 
-LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volumes,
-                                const PictureSize& size) {
+LoadedTarget target_of_medium(const PictureOptions& options, VolumeMedium volumes,
+                              const PictureSize& size) {
   const UpAxis up = read_up(options);
   CameraOptions camera_options = read_camera(options, FilmPlan());
   camera_options.width = size.width;
@@ -155,19 +154,19 @@ LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volu
   std::vector<std::string> warnings;
   const Surroundings surroundings = make_surroundings(read_lights(options), up, &warnings);
   for (const std::string& warning : warnings) warn("{}", warning);
-  LoadedSubject loaded;
+  LoadedTarget loaded;
   loaded.settings = read_run_settings(options);
   loaded.film = size;
   const Medium& medium = *volumes.medium;
   const TrackerChoice choice = settle_tracker("auto", medium);
   loaded.automatic_tracker = choice.tracker;
   loaded.reason = choice.reason;
-  Subject& subject = loaded.subject;
-  subject.name = names_of(options.volumes.files);
-  subject.width = size.width;
-  subject.height = size.height;
+  RenderTarget& target = loaded.target;
+  target.name = names_of(options.volumes.files);
+  target.width = size.width;
+  target.height = size.height;
   set_renderers(
-      subject,
+      target,
       std::make_shared<PathScene>(make_volume_scene(
           volumes, make_camera(medium, camera_options, up), surroundings, read_ground(options))),
       read_color(options, ColorMode::kRgb));
@@ -175,10 +174,10 @@ LoadedSubject subject_of_medium(const PictureOptions& options, VolumeMedium volu
   return loaded;
 }
 
-LoadedSubject load_subject(const CLI::App& command, const PictureOptions& options,
-                           const std::optional<PictureSize>& size) {
-  if (is_scene(options)) return load_scene_subject(command, options, size);
-  return load_volume_subject(command, options, size ? *size : parse_size(options.size, "--size"));
+LoadedTarget load_target(const CLI::App& command, const PictureOptions& options,
+                         const std::optional<PictureSize>& size) {
+  if (is_scene(options)) return load_scene_target(command, options, size);
+  return load_volume_target(command, options, size ? *size : parse_size(options.size, "--size"));
 }
 
 }  // namespace freepath::program

@@ -1,4 +1,4 @@
-#include "freepath/lights/light_chooser.h"
+#include "freepath/lights/light_sampler.h"
 
 #include <algorithm>
 #include <array>
@@ -70,7 +70,7 @@ Split split_along(int axis, const Box3f& centres, const std::vector<LightBounds>
 
 }  // namespace
 
-LightChooser::LightChooser(const std::vector<LightBounds>& lights) {
+LightSampler::LightSampler(const std::vector<LightBounds>& lights) {
   std::vector<uint32_t> order;
   double power = 0;
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -93,7 +93,7 @@ LightChooser::LightChooser(const std::vector<LightBounds>& lights) {
   build(relative, &order, 0, order.size(), kNone);
 }
 
-void LightChooser::build(const Lights& lights, std::vector<uint32_t>* order, std::size_t first,
+void LightSampler::build(const Lights& lights, std::vector<uint32_t>* order, std::size_t first,
                          std::size_t last, uint32_t parent) {
   const auto index = static_cast<uint32_t>(nodes_.size());
   nodes_.push_back({lights[(*order)[first]], parent});
@@ -127,7 +127,7 @@ void LightChooser::build(const Lights& lights, std::vector<uint32_t>* order, std
   build(lights, order, middle, last, index);
 }
 
-LightChoice LightChooser::choose(const Vec3f& position, float u) const {
+LightChoice LightSampler::choose(const Vec3f& position, float u) const {
   if (!probabilities_.empty()) {
     LightChoice choice;
     for (std::size_t i = 0; i < probabilities_.size(); ++i) {
@@ -147,11 +147,11 @@ LightChoice LightChooser::choose(const Vec3f& position, float u) const {
     if (!(first + second > 0)) return {};
     const float share = first / (first + second);
     if (u < share) {
-      u = std::min(u / share, kBelowOne);
+      u = std::min(u / share, kOneMinusEpsilon);
       probability *= share;
       node = node + 1;
     } else {
-      u = std::min((u - share) / (1.0F - share), kBelowOne);
+      u = std::min((u - share) / (1.0F - share), kOneMinusEpsilon);
       probability *= second / (first + second);
       node = nodes_[node].second;
     }
@@ -159,7 +159,7 @@ LightChoice LightChooser::choose(const Vec3f& position, float u) const {
   return {nodes_[node].light, probability};
 }
 
-float LightChooser::probability(const Vec3f& position, uint32_t light) const {
+float LightSampler::probability(const Vec3f& position, uint32_t light) const {
   if (!probabilities_.empty()) return probabilities_[light];
   if (nodes_.empty() || leaves_[light] == kNone) return 0;
   float probability = 1;

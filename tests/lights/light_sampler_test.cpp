@@ -1,6 +1,6 @@
 // Choosing one of many lights: the probabilities are those of the draws, and miss no light.
 
-#include "freepath/lights/light_chooser.h"
+#include "freepath/lights/light_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -50,10 +50,10 @@ std::vector<Vec3f> random_positions(int count) {
   return positions;
 }
 
-TEST(LightChooser, TheProbabilitiesSumToOne) {
+TEST(LightSampler, TheProbabilitiesSumToOne) {
   for (const std::size_t count : {1U, 2U, 16U, 17U, 18U, 300U}) {
     const std::vector<LightBounds> lights = random_lights(count);
-    const LightChooser chooser(lights);
+    const LightSampler chooser(lights);
     for (const Vec3f& position : random_positions(200)) {
       double sum = 0;
       for (uint32_t light = 0; light < count; ++light) {
@@ -65,14 +65,14 @@ TEST(LightChooser, TheProbabilitiesSumToOne) {
       }
       // Down a branch where nothing shines the draw ends without a light.
       EXPECT_LE(sum, 1 + 1e-5);
-      EXPECT_GE(sum, count <= LightChooser::kFewLights ? 1 - 1e-5 : 0);
+      EXPECT_GE(sum, count <= LightSampler::kFewLights ? 1 - 1e-5 : 0);
     }
   }
 }
 
-TEST(LightChooser, DrawsHaveTheirProbabilities) {
+TEST(LightSampler, DrawsHaveTheirProbabilities) {
   for (const std::size_t count : {5U, 16U, 17U, 100U}) {
-    const LightChooser chooser(random_lights(count));
+    const LightSampler chooser(random_lights(count));
     for (const Vec3f& position : random_positions(5)) {
       constexpr int kSamples = 50'000;
       std::vector<double> expected(count + 1);
@@ -99,9 +99,9 @@ TEST(LightChooser, DrawsHaveTheirProbabilities) {
   }
 }
 
-TEST(LightChooser, NoLightIsMissedWhereItShines) {
+TEST(LightSampler, NoLightIsMissedWhereItShines) {
   const std::vector<LightBounds> lights = random_lights(300);
-  const LightChooser chooser(lights);
+  const LightSampler chooser(lights);
   RandomStream random(8, 8, 8, 8);
   int shining = 0;
   for (const Vec3f& position : random_positions(2000)) {
@@ -125,14 +125,14 @@ TEST(LightChooser, NoLightIsMissedWhereItShines) {
   EXPECT_GT(shining, 300);
 }
 
-TEST(LightChooser, PrefersWhatIsNear) {
+TEST(LightSampler, PrefersWhatIsNear) {
   std::vector<LightBounds> lights(40);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     lights[i].box = Box3f(Vec3f(static_cast<float>(i), 0, 0));
     lights[i].normals.cosine = -1;
     lights[i].power = 1;
   }
-  const LightChooser chooser(lights);
+  const LightSampler chooser(lights);
   const Vec3f position(20, 0.1F, 0);
   EXPECT_GT(chooser.probability(position, 20), 10.0F / 40);  // ten times its share by power
   EXPECT_GT(chooser.probability(position, 0), 0);

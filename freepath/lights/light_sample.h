@@ -5,20 +5,20 @@
 #include <limits>
 #include <optional>
 
-#include "freepath/base/channels.h"
+#include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 
 namespace freepath {
 
 /// A direction drawn towards a light. The estimate of what arrives is radiance / pdf, for every
 /// kind of light.
-struct LightDraw {
+struct LightSample {
   Vec3f direction{0, 0, 1};  ///< Unit vector from the point to the light [world].
   /// To the light; infinite for one from outside of the scene.
   float distance = std::numeric_limits<float>::infinity();
   /// From this direction, of all lights outside of the scene together; of a light without extent
   /// the irradiance of a surface that faces it.
-  Channels radiance;
+  SampledSpectrum radiance;
   /// With the probability of choosing the light [1/sr]; of a light without extent that probability
   /// alone. With 0 the draw is to be dropped.
   float pdf = 0;
@@ -37,7 +37,7 @@ struct LightDraw {
 /// What a ray sees of a light, and with which density SceneLights::sample would have drawn its
 /// direction at its start [1/sr].
 struct LightSeen {
-  Channels radiance;
+  SampledSpectrum radiance;
   float pdf = 0;
 };
 

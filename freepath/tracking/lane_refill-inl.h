@@ -22,12 +22,12 @@ inline constexpr uint32_t kHeroBlock = 0x1FFFFFFF;
 
 /// Gives rays to the lanes of groups, and takes back what became of them.
 template <int N, class Tracker, class Segments, class Medium, class Entry>
-class RayDealer {
+class LaneRefill {
  public:
   using Group = WalkGroup<N, Tracker, Segments, Medium>;
 
-  RayDealer(const Tracker& tracker, const Segments& segments, const Medium& medium, uint64_t seed,
-            const RayStream& rays, Entry& entry, FlightStream& flights)
+  LaneRefill(const Tracker& tracker, const Segments& segments, const Medium& medium, uint64_t seed,
+             const RayStream& rays, Entry& entry, FlightStream& flights)
       : tracker_(tracker),
         segments_(segments),
         medium_(medium),
@@ -57,30 +57,30 @@ class RayDealer {
     uint32_t lanes = ~group.alive & ((1U << kLanes) - 1);
     const std::size_t left = chunk_end_ - next_ray_;
     while (static_cast<std::size_t>(std::popcount(lanes)) > left) lanes &= lanes - 1;
-    const Dealer dealer(lanes);
-    segments_.refill(*chunk_, next_ray_ - chunk_begin_, dealer, group.segments);
-    dealer.deal(chunk_->begin + (next_ray_ - chunk_begin_), group.begin);
+    const Refill refill(lanes);
+    segments_.refill(*chunk_, next_ray_ - chunk_begin_, refill, group.segments);
+    refill.deal(chunk_->begin + (next_ray_ - chunk_begin_), group.begin);
     for (int channel = 0; channel < N; ++channel) {
       if (rays_.weighted()) {
-        dealer.deal(rays_.weight[medium_.source(channel)].data() + next_ray_,
+        refill.deal(rays_.weight[medium_.source(channel)].data() + next_ray_,
                     group.weight[channel]);
       } else {
-        dealer.fill(1.0F, group.weight[channel]);
+        refill.fill(1.0F, group.weight[channel]);
       }
-      dealer.fill(0.0F, group.emitted[channel]);
+      refill.fill(0.0F, group.emitted[channel]);
     }
     if constexpr (Group::kRows > 0) {
       for (int row = 0; row < Group::kRows; ++row) {
-        dealer.fill(tracker_.template row_start<N>(row), group.rows[row]);
+        refill.fill(tracker_.template row_start<N>(row), group.rows[row]);
       }
     }
-    dealer.deal(rays_.pixel.data() + next_ray_, group.pixel);
-    dealer.deal(rays_.sample.data() + next_ray_, group.sample);
-    dealer.deal(rays_.stream.data() + next_ray_, group.stream);
-    dealer.clear(group.block);
-    if constexpr (Tracker::kControl) dealer.clear(group.control_decided);
-    dealer.count_from(static_cast<uint32_t>(next_ray_), group.ray);
-    if constexpr (Tracker::kDrawsHero) draw_hero(dealer, mask_of(lanes), group);
+    refill.deal(rays_.pixel.data() + next_ray_, group.pixel);
+    refill.deal(rays_.sample.data() + next_ray_, group.sample);
+    refill.deal(rays_.stream.data() + next_ray_, group.stream);
+    refill.clear(group.block);
+    if constexpr (Tracker::kControl) refill.clear(group.control_decided);
+    refill.count_from(static_cast<uint32_t>(next_ray_), group.ray);
+    if constexpr (Tracker::kDrawsHero) draw_hero(refill, mask_of(lanes), group);
     next_ray_ += static_cast<std::size_t>(std::popcount(lanes));
     group.alive |= lanes;
     group.drawing |= lanes;
@@ -188,12 +188,12 @@ class RayDealer {
   }
 
   /// The channel that leads each new flight, by random numbers that no collision uses.
-  HWY_INLINE void draw_hero(const Dealer& dealer, MaskF lanes, Group& group) const {
+  HWY_INLINE void draw_hero(const Refill& refill, MaskF lanes, Group& group) const {
     VecF rows[Group::kStoredRows];
     VecF weight[N];
     for (int channel = 0; channel < N; ++channel) {
       if (rays_.weighted()) {
-        dealer.deal(rays_.density[medium_.source(channel)].data() + next_ray_, group.rows[channel]);
+        refill.deal(rays_.density[medium_.source(channel)].data() + next_ray_, group.rows[channel]);
       }
       weight[channel] = hn::Load(kFloat, group.weight[channel]);
     }

@@ -1,4 +1,4 @@
-#include "freepath/io/aside_file.h"
+#include "freepath/io/atomic_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -84,7 +84,7 @@ void check_file_place(const std::string& path) {
 }
 
 template <class Take>
-bool AsideFile::take_name(Take take) {
+bool AtomicFile::take_name(Take take) {
   constexpr int kMostTries = 100;
   for (int i = 0; i < kMostTries; ++i) {
     const fs::path name = folder_of(target_) / fmt::format(".freepath-{}.partial", random_word());
@@ -97,24 +97,24 @@ bool AsideFile::take_name(Take take) {
   return false;
 }
 
-AsideFile::AsideFile(const std::string& path, AsideKind kind)
+AtomicFile::AtomicFile(const std::string& path, AtomicKind kind)
     : path_(path), target_(resolved(path)) {
   check_file_place(path);
-  if (kind == AsideKind::kNamed || !open_nameless()) open_named();
+  if (kind == AtomicKind::kNamed || !open_nameless()) open_named();
 }
 
-AsideFile::AsideFile(AsideFile&& other) noexcept
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : path_(std::move(other.path_)),
       target_(std::move(other.target_)),
       aside_(std::exchange(other.aside_, fs::path())),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-AsideFile::~AsideFile() {
+AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) close(descriptor_);
   if (!aside_.empty()) unlink(aside_.c_str());
 }
 
-bool AsideFile::open_nameless() {
+bool AtomicFile::open_nameless() {
   descriptor_ = open(folder_of(target_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   if (descriptor_ < 0) return false;
   // It is written to, and gets its name, by the name that the process has for it.
@@ -123,7 +123,7 @@ bool AsideFile::open_nameless() {
   return false;
 }
 
-void AsideFile::open_named() {
+void AtomicFile::open_named() {
   const bool made = take_name([&](const fs::path& name) {
     descriptor_ = open(name.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_RDWR | O_CLOEXEC, 0666);
     return descriptor_ >= 0;
@@ -131,18 +131,18 @@ void AsideFile::open_named() {
   if (!made) give_up(reason_of(errno));
 }
 
-void AsideFile::retarget(const std::string& path) {
+void AtomicFile::retarget(const std::string& path) {
   check_file_place(path);
   path_ = path;
   target_ = resolved(path);
 }
 
-std::string AsideFile::name() const {
+std::string AtomicFile::name() const {
   const std::string own = process_name(descriptor_);
   return aside_.empty() || access(own.c_str(), W_OK) == 0 ? own : aside_.string();
 }
 
-void AsideFile::write(std::string_view contents) const {
+void AtomicFile::write(std::string_view contents) const {
   if (ftruncate(descriptor_, 0) != 0 || lseek(descriptor_, 0, SEEK_SET) != 0) {
     give_up(reason_of(errno));
   }
@@ -153,7 +153,7 @@ void AsideFile::write(std::string_view contents) const {
   }
 }
 
-void AsideFile::give_up(const std::string& reason) const {
+void AtomicFile::give_up(const std::string& reason) const {
   std::string text = reason;
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
     text.pop_back();
@@ -161,7 +161,7 @@ void AsideFile::give_up(const std::string& reason) const {
   fail("{}: can't write it: {}", path_, text.empty() ? "unknown reason" : text);
 }
 
-void AsideFile::replace_target() {
+void AtomicFile::replace_target() {
   const bool nameless = aside_.empty();
   if (nameless) {
     const bool named = take_name([&](const fs::path& name) {
@@ -184,7 +184,7 @@ void AsideFile::replace_target() {
 }
 
 void write_file(const std::string& path, std::string_view contents) {
-  AsideFile file(path);
+  AtomicFile file(path);
   file.write(contents);
   file.replace_target();
 }
