@@ -39,17 +39,18 @@ struct TracedInstance {
 
 enum class QueryKind { kNearest, kOcclusion, kCount, kTies, kAll };
 
-/// What the places of all rays of a scene depend on.
-struct PlaceRule {
+/// What the positions of all rays of a scene depend on.
+struct RayPositionRule {
   std::vector<TracedInstance> instances;
   std::vector<float> smallest_offset;  ///< By SurfaceShape::shape.
   double extent = 0;                   ///< Largest coordinate of anything [world, from the origin].
 
   /// @param at,key of a point where the ray meets a surface of the shape
-  RayPlace place(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
-                 uint32_t shape) const;
-  /// How far from its place single precision may find a surface that faces the same way [t].
-  double search_range(const LocalRay& world, const LinePoint& at, const RayPlace& place) const;
+  RayPosition position(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
+                       uint32_t shape) const;
+  /// How far from its position single precision may find a surface that faces the same way [t].
+  double search_range(const LocalRay& world, const LinePoint& at,
+                      const RayPosition& position) const;
   /// The ray in the space of what a key is of.
   LocalRay local_ray(const LocalRay& world, uint32_t instance) const {
     if (instance == kNoInstance) return world;
@@ -73,18 +74,18 @@ struct SurfaceQuery {
   QueryKind kind;
   LocalRay ray;  ///< In the world, relative to the origin of rays.
   double t_min = 0, t_max = 0;
-  const PlaceRule* rule = nullptr;
+  const RayPositionRule* rule = nullptr;
   unsigned first_instance = 0;  ///< Geometry number of the first instance.
 
-  RayPlace nearest = {std::numeric_limits<double>::infinity(), 0, {}};  ///< Of kNearest.
+  RayPosition nearest = {std::numeric_limits<double>::infinity(), 0, {}};  ///< Of kNearest.
   bool is_tied = false;
 
   double t_block = 0;                     ///< Of kOcclusion: only what is nearer blocks,
   std::optional<SurfaceKey> target = {};  ///< and never this.
-  const RayPlace* after = nullptr;        ///< Crossings up to there are left out.
+  const RayPosition* after = nullptr;     ///< Crossings up to there are left out.
   BoundaryCrossings* crossings = nullptr;
 
-  const RayPlace* around = nullptr;  ///< Of kTies.
+  const RayPosition* around = nullptr;  ///< Of kTies.
   std::vector<TiedSurface>* ties = nullptr;
   std::vector<BoundaryCrossing>* all = nullptr;  ///< Of kAll.
   std::span<const uint32_t> counted = {};        ///< Of kCount: the shapes.

@@ -38,8 +38,8 @@ struct FrustumMap {
 /// Replaces fields in the index space of a frustum by ones whose voxels all have the size of those
 /// at its near end (larger if that makes too many), planes in z staying where they are. A warning
 /// says how many voxels that makes, and the largest difference of the interpolants at 4096 points.
-/// @param place the beginning of the warning
-void resample_frustum(const std::string& place, const FrustumMap& map,
+/// @param label the beginning of the warning
+void resample_frustum(const std::string& label, const FrustumMap& map,
                       std::vector<LoadedField>& fields);
 
 }  // namespace freepath::io

@@ -61,7 +61,7 @@ VdbDirectory read_vdb_directory(const VolumeFile& file);
 std::string vdb_value_type(const VdbGrid& grid);
 
 /// The transform of a grid, and where its tree stands.
-struct VdbPlaces {
+struct VdbLocation {
   Matrix4d index_to_world;
   uint64_t topology = 0;                   ///< Offset of the tree.
   uint64_t end = 0;                        ///< Where the transform ends in the file.
@@ -70,7 +70,7 @@ struct VdbPlaces {
 };
 
 /// Reads the transform of a grid.
-VdbPlaces read_vdb_places(const VolumeFile& file, const VdbDirectory& directory,
-                          const VdbGrid& grid);
+VdbLocation read_vdb_location(const VolumeFile& file, const VdbDirectory& directory,
+                              const VdbGrid& grid);
 
 }  // namespace freepath::io

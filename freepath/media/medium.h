@@ -105,15 +105,15 @@ class Medium {
   ///   medium, single precision holds them however far from the world's origin that is
   AffineMap world_to_walk(const Vec3d& origin = Vec3d(0)) const;
   AffineMap world_to_walk(const WalkPart& part, const Vec3d& origin) const;
-  /// World space → place in the grid of voxels that the parts' boxes are in.
-  const Matrix4d& world_to_place() const { return world_to_place_; }
+  /// World space → position in the grid of voxels that the parts' boxes are in.
+  const Matrix4d& world_to_grid() const { return world_to_grid_; }
   /// The point of the world in the middle of a part.
   Vec3d middle_of(const WalkPart& part) const;
-  /// Walk space → place in a component's voxels, counted from the first of its index; the centre of
-  /// voxel i is at i + 1/2.
+  /// Walk space → position in a component's voxels, counted from the first of its index; the centre
+  /// of voxel i is at i + 1/2.
   AffineMap walk_to_component(std::size_t component) const;
   AffineMap walk_to_component(const WalkPart& part, std::size_t component) const;
-  /// Walk space → place in the voxels of another field, which may stand anyhow in the world.
+  /// Walk space → position in the voxels of another field, which may stand anyhow in the world.
   /// @throws Error if the field's transform has no inverse
   AffineMap walk_to_field(const Field& field) const;
   /// The same, of a part.
@@ -142,16 +142,16 @@ class Medium {
   std::vector<const Field*> fields() const;
   void build_from_voxels(int super_voxel);
   void build_from_functions();
-  void set_world_to_place(const std::optional<Matrix4d>& world_to_index);
+  void set_world_to_grid(const std::optional<Matrix4d>& world_to_index);
   void set_parts(std::vector<WalkPart> parts);
-  Matrix4d place_to_field(const Field& field) const;
+  Matrix4d grid_to_field(const Field& field) const;
 
   std::vector<Component> components_;
   std::shared_ptr<const std::vector<WalkPart>> parts_;
   std::shared_ptr<const BoxTree> part_tree_ = std::make_shared<const BoxTree>();
   WalkCells walk_cells_;
   WalkSpace space_;
-  Matrix4d world_to_place_;
+  Matrix4d world_to_grid_;
   double reach_ = 1;  // beyond the middles of the outermost voxels, where filters reach so far
 };
 

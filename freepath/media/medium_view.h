@@ -31,7 +31,7 @@ struct ComponentView {
   const float* voxels = nullptr;              ///< Voxels of the bricks.
   const DensityFunction* function = nullptr;  ///< In place of both, if set.
   std::array<int32_t, 3> brick_counts{};      ///< Of the index.
-  AffineMap walk_to_voxels;  ///< Walk space → place in the voxels; used unless aligned.
+  AffineMap walk_to_voxels;  ///< Walk space → position in the voxels; used unless aligned.
   std::array<float, kMaxChannels> sigma_a{};
   std::array<float, kMaxChannels> sigma_s{};
   std::array<float, kMaxChannels> emission{};        ///< sigma_a · L_e, where that does not vary.

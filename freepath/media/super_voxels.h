@@ -59,12 +59,13 @@ struct SuperVoxelCost {
 
 /// A component's voxels, and where they stand in the grid that is cut into cells.
 ///
-/// The bounds of a cell are those of the voxels that the cell's own box of places covers, grown by
-/// one. A tap of the trilinear filter reads half a voxel less far: so much a place may be off.
+/// The bounds of a cell are those of the voxels that the cell's own box of positions covers, grown
+/// by one. A tap of the trilinear filter reads half a voxel less far: so much a position may be
+/// off.
 struct PlacedVoxels {
   const VoxelRanges* ranges = nullptr;  ///< Of the component's map.
   BrickWindow window;                   ///< What of the map the grid reaches.
-  Matrix4d to_component;  ///< Place in the grid → place in the window; see WalkSpace.
+  Matrix4d to_component;  ///< Position in the grid → position in the window; see WalkSpace.
 };
 
 /// How many cells are not too many.

@@ -58,7 +58,7 @@ class OpenJobs {
 
  private:
   /// The lowest place where so many results lie beside those of open jobs.
-  std::size_t place_of(std::size_t paths) const;
+  std::size_t first_free_slot(std::size_t paths) const;
 
   std::size_t paths_per_sample_ = 1;
   bool is_light_ = false;

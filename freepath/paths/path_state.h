@@ -6,7 +6,7 @@
 
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
-#include "freepath/paths/media_places.h"
+#include "freepath/paths/media_set_table.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/sample_spectra.h"
 
@@ -19,7 +19,7 @@ struct alignas(64) ScenePath {
   uint64_t lookups = 0;       ///< Look-ups of densities so far.
   MediumId medium = kVacuum;  ///< What the media around are together.
   int channel = -1;           ///< The one channel that it carries, or -1.
-  PlaceId place = 0;          ///< Which media are around: MediaPlaces.
+  MediaSetId media = 0;       ///< Which media are around: MediaSetTable.
   uint32_t pixel = 0;
   uint32_t sample_key = 0;  ///< Of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.

@@ -88,12 +88,12 @@ class PathWavefront {
   void end_path(ScenePath& path, const PathJobSource& jobs, Film& film);
   /// Fills order_, and tells the job.
   void set_order(OpenJobs::Job& opened);
-  struct SamplePlace {
+  struct PixelSample {
     uint32_t pixel;   ///< Of the picture.
     uint32_t sample;  ///< Of the pixel.
   };
   /// @param number of the job's samples, pixel by pixel
-  SamplePlace place_of(const PathJob& job, std::size_t number) const;
+  PixelSample pixel_sample_of(const PathJob& job, std::size_t number) const;
   /// The numbers of a sample's place on the film; those of a pixel often follow each other.
   std::array<float, 2> film_pair(const SampleSequence& numbers, uint32_t pixel, uint32_t sample);
   /// @param path_number of the newest job's paths
@@ -148,12 +148,12 @@ class PathWavefront {
   /// Where a new ray starts at a surface, and the media that are there.
   struct Departure {
     Vec3f origin;
-    PlaceId place;
+    MediaSetId media;
   };
   Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction);
-  void set_place(ScenePath& path, PlaceId place) const {
-    path.place = place;
-    path.medium = places_.medium(place);
+  void set_media(ScenePath& path, MediaSetId media) const {
+    path.media = media;
+    path.medium = media_sets_.medium(media);
   }
   ShadowEnd shadow_end(const LightSample& light) const {
     if (!light.area || light.area->light >= shapes_of_lights_.size()) return {light.distance};
@@ -252,8 +252,8 @@ class PathWavefront {
   const PathSetup& setup_;
   const PathScene& scene_;
   const FluxMeter* meter_;  // of the setup
-  MediaPlaces places_;
-  PlaceId camera_place_ = 0;
+  MediaSetTable media_sets_;
+  MediaSetId camera_media_ = 0;
   std::optional<Box3f> everything_;                        // around the medium, if that is all
   bool is_balanced_ = true;                                // whether white stays as it is
   bool has_alpha_ = false;                                 // whether a shape of the scene has

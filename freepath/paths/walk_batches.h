@@ -29,11 +29,11 @@ class WalkBatches {
   void clear();
 
   /// Where to put the next ray of a walker.
-  struct Place {
+  struct Slot {
     Batch& batch;
     std::size_t slot;
   };
-  Place add(const Walker& walker, uint32_t owner) {
+  Slot add(const Walker& walker, uint32_t owner) {
     if (last_ >= used_ || batches_[last_].walker != &walker) last_ = number_of(walker);
     Batch& batch = batches_[last_];
     const std::size_t slot = batch.count++;
@@ -43,7 +43,7 @@ class WalkBatches {
   }
 
   /// Where to put the next rays of a walker, one behind the other; the caller writes their owners.
-  Place add_all(const Walker& walker, std::size_t count) {
+  Slot add_all(const Walker& walker, std::size_t count) {
     if (last_ >= used_ || batches_[last_].walker != &walker) last_ = number_of(walker);
     Batch& batch = batches_[last_];
     const std::size_t slot = batch.count;

@@ -50,7 +50,7 @@ struct PlotAxis {
 
   /// NaN where the value has no place, or is not finite. Kept within reach of the plot, so that
   /// lines to values far outside remain drawable.
-  double place(double value) const;
+  double position(double value) const;
 };
 
 /// The width of the widest label.

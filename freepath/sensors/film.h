@@ -188,8 +188,8 @@ class Film {
   enum Sum { kNormal, kPosition, kTransmittance, kBackground, kUnscattered, kAtMostOnce, kEven };
   static constexpr int kSums = 7;
   /// Where a pixel has its sums; -1: nowhere.
-  using SumPlaces = std::array<int, kSums>;
-  static SumPlaces places_of(LayerSet layers, int& count);
+  using SumOffsets = std::array<int, kSums>;
+  static SumOffsets offsets_of(LayerSet layers, int& count);
 
   void add_layers(std::size_t pixel, const LayerSample& sample);
   void add_to(std::size_t pixel, Sum which, const Rgb& value);
@@ -205,7 +205,7 @@ class Film {
   uint32_t first_sample_ = 0;
   std::vector<Pixel> pixels_;
   int sums_per_pixel_ = 0;
-  SumPlaces places_{};
+  SumOffsets offsets_{};
   std::vector<Sum2::Array> sums_;
   std::vector<int8_t> sum_tops_;
   WavelengthBuckets buckets_;

@@ -69,7 +69,7 @@ class PixelFilter {
   double y_radius() const { return y_.radius; }
 
  private:
-  struct Place {
+  struct AxisSample {
     float x;
     float weight;
   };
@@ -77,7 +77,7 @@ class PixelFilter {
   struct Axis {
     Axis(const FilterModel& filter, double reach);
     double evaluate(double x) const;
-    Place sample(float u) const;
+    AxisSample sample(float u) const;
 
     FilterModel model;
     double radius;

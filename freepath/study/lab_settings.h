@@ -59,6 +59,6 @@ void set_lab_rays(uint64_t first, std::size_t count, RayStream& rays);
 
 /// Puts one of them elsewhere along the ray.
 /// @param length how far it goes [world]
-void place_lab_ray(std::size_t slot, float x, float length, RayStream& rays);
+void set_lab_ray(std::size_t slot, float x, float length, RayStream& rays);
 
 }  // namespace freepath

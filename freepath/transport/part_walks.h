@@ -46,7 +46,7 @@ class PartWalks {
 
   const Medium& medium_;
   Vec3d origin_;
-  Matrix4d ray_to_place_;       ///< From where rays are, relative to the origin, to places.
+  Matrix4d ray_to_grid_;        ///< From where rays are, relative to the origin, to positions.
   std::vector<Vec3d> middles_;  ///< Of the parts, relative to the origin.
   std::vector<std::shared_ptr<const std::vector<RadianceView>>> radiance_;  ///< Of the parts.
 };

@@ -104,11 +104,11 @@ class RayMedium {
   /// A path as it passes through the voxels of a component.
   Path path_in(int k, const Path& path) const;
   /// Value of a voxel, counted from the first of the index.
-  double voxel(int k, const Vec3i& place) const;
+  double voxel(int k, const Vec3i& coord) const;
   /// The nearest voxel that has a next one along every axis within the index of a component.
   Vec3i inside(int k, Vec3i voxel) const;
   /// Density between the eight voxels from `base` on, along place + s · step, s in [0,1].
-  std::array<double, 4> cubic(int k, const Vec3i& base, const Vec3d& place,
+  std::array<double, 4> cubic(int k, const Vec3i& base, const Vec3d& fraction,
                               const Vec3d& step) const;
 
   MediumView view_;

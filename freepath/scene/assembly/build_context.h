@@ -97,9 +97,9 @@ auto at_location(const SourceLocation& location, Function function) {
     return function();
   } catch (const Error& error) {
     const std::string text = error.what();
-    const std::string place = to_string(location);
+    const std::string text_location = to_string(location);
     if (text.compare(0, location.file->size() + 1, *location.file + ":") == 0) throw;
-    throw Error(place + ": " + text);
+    throw Error(text_location + ": " + text);
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// @file Places on a ray where it meets surfaces.
+/// @file Positions on a ray where it meets surfaces.
 
 #include <cstdint>
 #include <tuple>
@@ -24,19 +24,19 @@ struct SurfaceKey {
   }
 };
 
-/// A place on a ray where a surface is met, in double precision.
-struct RayPlace {
+/// A position on a ray where a surface is met, in double precision.
+struct RayPosition {
   double t = 0;  ///< position = origin + t direction
-  /// Surfaces no farther than this along the ray are at the same place [t]: a new ray from here may
-  /// start on either side of them, since positions in floats tell them apart no better.
+  /// Surfaces no farther than this along the ray are at the same position [t]: a new ray from here
+  /// may start on either side of them, since positions in floats tell them apart no better.
   double reach = 0;
   SurfaceKey key;
 
   /// In the order in which a ray meets them, which is strict.
-  bool is_before(const RayPlace& other) const {
+  bool is_before(const RayPosition& other) const {
     return t < other.t || (t == other.t && key < other.key);
   }
-  bool is_tied(const RayPlace& other) const {
+  bool is_tied(const RayPosition& other) const {
     const double gap = t < other.t ? other.t - t : t - other.t;
     return gap <= reach || gap <= other.reach;
   }
