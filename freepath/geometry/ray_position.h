@@ -12,9 +12,9 @@ inline constexpr uint32_t kNoInstance = 0xFFFFFFFF;
 /// Name of an intersection of a ray with all surfaces: the same for the same ray, whatever else
 /// there is.
 struct SurfaceKey {
-  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
-  uint32_t geometry = 0;            ///< Of what traces the shapes.
-  uint32_t primitive = 0;           ///< Of the geometry.
+  uint32_t instance = kNoInstance;  ///< Index in SurfaceScene::instances.
+  uint32_t geometry = 0;            ///< Number of the geometry among what traces the shapes.
+  uint32_t primitive = 0;           ///< Number of the primitive in its geometry.
   uint32_t root = 0;                ///< Which of the points where a line meets the primitive.
 
   friend bool operator==(const SurfaceKey&, const SurfaceKey&) = default;
@@ -32,7 +32,7 @@ struct RayPosition {
   double reach = 0;
   SurfaceKey key;
 
-  /// In the order in which a ray meets them, which is strict.
+  /// Whether a ray meets this before the other; a strict order.
   bool is_before(const RayPosition& other) const {
     return t < other.t || (t == other.t && key < other.key);
   }

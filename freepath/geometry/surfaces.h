@@ -20,7 +20,7 @@ struct SurfaceHit {
   float t = 0;  ///< position = origin + t direction
   SurfacePoint point;
   bool from_inside = false;         ///< The ray leaves the shape: direction · normal > 0.
-  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
+  uint32_t instance = kNoInstance;  ///< Index in SurfaceScene::instances.
   RayPosition position;
   bool is_tied = false;  ///< Another surface is at the same position; see Surfaces::find_ties.
 };
@@ -30,7 +30,7 @@ struct TiedSurface {
   RayPosition position;
   uint32_t shape = 0;
   bool enters = false;  ///< direction · normal < 0
-  float u = 0, v = 0;   ///< Of the primitive; for Surfaces::describe.
+  float u = 0, v = 0;   ///< Parameters on the primitive; for Surfaces::describe.
 };
 
 /// Where a shadow ray ends.
@@ -46,7 +46,7 @@ struct ShadowEnd {
 
 /// What surfaces cost, counted, so that tests see how it grows.
 struct SurfaceCosts {
-  uint64_t positions = 0;  ///< Those of meshes that were looked at for bounds.
+  uint64_t positions = 0;  ///< Positions of meshes that were looked at for bounds.
   uint64_t bytes = 0;      ///< Held by Embree.
 };
 
@@ -67,7 +67,7 @@ class Surfaces {
   Surfaces& operator=(Surfaces&&) noexcept;
 
   const Vec3d& origin() const;
-  /// Around all that is there [world, relative to the origin]; empty if nothing is.
+  /// The box around all surfaces [world, relative to the origin]; empty if nothing is.
   Box3f bounds() const;
 
   SurfaceCosts costs() const;
@@ -103,7 +103,7 @@ class Surfaces {
   /// even on the common edge of two triangles. Allocates: for the time of loading.
   std::vector<BoundaryCrossing> all_crossings(const Vec3f& origin, const Vec3f& direction) const;
 
-  /// Where a ray starts that leaves a point of these surfaces, so that it does not meet the same
+  /// The origin of a ray that leaves a point of these surfaces, so that it does not meet the same
   /// position again: off the surface along its normal, to the side of the direction, by a few
   /// roundings of the position.
   Vec3f offset_ray_origin(const SurfacePoint& point, const Vec3f& direction) const;

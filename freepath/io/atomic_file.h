@@ -39,7 +39,7 @@ class AtomicFile {
   const std::string& path() const { return path_; }
   /// Gives it another target in the same folder. @throws Error as check_file_target
   void retarget(const std::string& path);
-  /// What to open to write to it; opened again, it is begun anew.
+  /// The name to open to write to the file; opened again, it is begun anew.
   std::string name() const;
   /// Writes it as a whole. @throws Error that names the target
   void write(std::string_view contents) const;

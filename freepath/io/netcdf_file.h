@@ -20,9 +20,9 @@ enum class NetcdfAxis { kX, kY, kZ, kTime, kOther };
 
 /// Coordinates along an axis of space.
 struct NetcdfCoordinates {
-  std::string name;               ///< Of the dimension.
-  std::vector<double> positions;  ///< Of the samples [m].
-  double step = 0;                ///< Between them, if uniform [m].
+  std::string name;               ///< Name of the dimension.
+  std::vector<double> positions;  ///< Positions of the samples [m].
+  double step = 0;                ///< Distance of neighbouring samples, if uniform [m].
   bool uniform = false;
 };
 

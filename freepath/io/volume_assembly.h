@@ -183,7 +183,7 @@ class FieldAssembly {
   /// @throws Error for a bad value
   LoadedField finish(std::string name, const Matrix4d& index_to_world, const ValueScan& scan) &&;
 
-  /// The same numbers for a list of grids; its range grows by this channel's.
+  /// Enters the numbers of a scan into a list of grids; the range there grows by this channel's.
   void describe(const ValueScan& scan, GridInfo& info) const;
 
  private:
@@ -228,7 +228,7 @@ class GridAssembly {
   /// @throws Error for a bad value
   std::vector<LoadedField> finish(const GridInfo& info, const GridScan& scan) &&;
 
-  /// The same numbers for a list of grids.
+  /// Enters the numbers of a scan into a list of grids.
   void describe(const GridScan& scan, GridInfo& info) const;
 
  private:

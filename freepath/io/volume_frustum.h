@@ -16,8 +16,8 @@ struct FrustumMap {
   Vec3d origin;  ///< The index point that is 0 in the frustum's space.
   double width =
       1;  ///< Voxels across the plane at the origin, which is 1 wide in the frustum's space.
-  double step = 1;    ///< From one plane to the next in the frustum's space.
-  double growth = 0;  ///< Of the planes' width, by unit of z.
+  double step = 1;    ///< Distance of neighbouring planes in the frustum's space.
+  double growth = 0;  ///< Growth of the planes' width by unit of z.
   Matrix4d frustum_to_world;
 
   /// Edge of a voxel in x and y at a depth; not positive behind the camera.

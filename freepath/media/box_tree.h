@@ -76,7 +76,7 @@ class BoxTree {
     GridBox box;
     int axis = 0;                ///< What the halves lie apart along.
     int32_t halves[2] = {0, 0};  ///< Nodes, the lower half first.
-    int32_t leaf = -1;           ///< In place of the halves, if it is one.
+    int32_t leaf = -1;           ///< Number of the leaf, if it is one; then it has no halves.
   };
 
   int32_t add(std::vector<GridBox> items);

@@ -22,7 +22,7 @@ struct PlacedBrick {
 /// A dense index of bricks over a box of a map, its own or a part cut out of it.
 struct BrickWindow {
   Vec3i origin{0};                  ///< First voxel, a multiple of 8 [index].
-  Vec3i brick_counts{0};            ///< Along each axis.
+  Vec3i brick_counts{0};            ///< Number of bricks along each axis.
   const uint32_t* index = nullptr;  ///< Brick of each entry, x slowest, as BrickMap::index().
   std::shared_ptr<const std::vector<uint32_t>> cut_out{};  ///< Holds it, where it is no map's own.
 

@@ -65,16 +65,16 @@ class Medium {
   explicit Medium(std::vector<Component> components, int super_voxel = 0,
                   const std::optional<Matrix4d>& world_to_index = {});
 
-  /// The same medium with other bounds: maxima times `scale`, minima divided by it. Above 1 they
-  /// are looser; below 1 they are no bounds, which methods that need them are biased by. To study
-  /// what bounds cost, and to test what notices wrong ones.
+  /// A copy of the medium with other bounds: maxima times `scale`, minima divided by it. Above 1
+  /// they are looser; below 1 they are no bounds, which methods that need them are biased by. To
+  /// study what bounds cost, and to test what notices wrong ones.
   Medium with_scaled_bounds(float scale) const;
 
-  /// The same medium, cut off at the faces of its outermost active voxels, where the filter's reach
-  /// would let it fade over another half of a voxel.
+  /// A copy of the medium, cut off at the faces of its outermost active voxels, where the filter's
+  /// reach would let it fade over another half of a voxel.
   Medium clipped_to_voxels() const;
-  /// The same, cut off at the middles of its outermost active voxels: what lies inside of them is
-  /// not faded.
+  /// A copy of the medium, cut off at the middles of its outermost active voxels: what lies inside
+  /// of them is not faded.
   Medium clipped_to_middles() const;
 
   const std::vector<Component>& components() const { return components_; }
@@ -116,7 +116,7 @@ class Medium {
   /// Walk space → position in the voxels of another field, which may stand anyhow in the world.
   /// @throws Error if the field's transform has no inverse
   AffineMap walk_to_field(const Field& field) const;
-  /// The same, of a part.
+  /// Walk space of a part → position in the voxels of another field.
   /// @param window what of the field the part reads: set to that
   AffineMap walk_to_field(const WalkPart& part, const Field& field, BrickWindow& window) const;
 

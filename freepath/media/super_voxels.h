@@ -63,7 +63,7 @@ struct SuperVoxelCost {
 /// by one. A tap of the trilinear filter reads half a voxel less far: so much a position may be
 /// off.
 struct PlacedVoxels {
-  const VoxelRanges* ranges = nullptr;  ///< Of the component's map.
+  const VoxelRanges* ranges = nullptr;  ///< Ranges of the component's map.
   BrickWindow window;                   ///< What of the map the grid reaches.
   Matrix4d to_component;  ///< Position in the grid → position in the window; see WalkSpace.
 };
@@ -90,7 +90,7 @@ SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Ve
                                std::span<const float> extinction, int cell_size,
                                const CellLimits& limits = {}, const SuperVoxelCost& cost = {});
 
-/// The same for densities that share origin and brick counts, whose voxels are the grid. Their
+/// Super-voxels for densities that share origin and brick counts, whose voxels are the grid. Their
 /// indices must be dense.
 SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                std::span<const float> extinction, int cell_size,

@@ -20,9 +20,9 @@ struct WalkSpace {
   /// Whether the walk takes place in parts, each with windows of the components; else the grid is
   /// walked through as a whole, by the components' own indices.
   bool in_parts = false;
-  Matrix4d index_to_world;  ///< Of the grid.
+  Matrix4d index_to_world;  ///< Transform of the grid.
   Vec3i origin{0};          ///< Its first voxel [index].
-  Vec3i voxel_counts{0};    ///< Along each axis.
+  Vec3i voxel_counts{0};    ///< Number of voxels along each axis.
   /// Position in the grid → position in the voxels of each component.
   /// Composed in double precision without the way to the world's origin and back.
   std::vector<Matrix4d> to_component;

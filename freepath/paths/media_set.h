@@ -34,7 +34,7 @@ class MediaSet {
     }
   };
 
-  /// Those whose number is not 0, by medium.
+  /// Media whose number is not 0, in the order of their ids.
   std::span<const Entry> entries() const { return {entries_.data(), size_}; }
 
   /// @throws Error where there are more media at once than it holds

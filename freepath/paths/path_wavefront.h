@@ -34,7 +34,7 @@ struct PathSetup {
   const WavelengthSampler* factory = nullptr;
   uint64_t seed = 0;
   Absorption absorption = Absorption::kWeighted;
-  uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
+  uint32_t max_scatterings = UINT32_MAX;  ///< Most scatterings at surfaces and in media together.
   bool transparent = false;               ///< RenderSettings::transparent
   /// Russian roulette is played where no channel's throughput reaches this.
   float roulette_threshold = 0.25F;
@@ -44,10 +44,10 @@ struct PathSetup {
   /// Which shadow rays are cast; null: all.
   const ShadowGuide* shadow_guide = nullptr;
   std::size_t slots = kPathsInFlight;
-  /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
+  /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const SampleSpectra>> colors;
   uint32_t first_set = 0;
-  /// Where paths begin at a meter, as light does, and not at the camera: what there is of it, and
+  /// The meter where paths begin, as light does, if not at the camera, and
   /// who sums what they bring. Such paths carry one channel, and lights have no part in it.
   const FluxMeter* meter = nullptr;
   FluxTally* tally = nullptr;
@@ -89,8 +89,8 @@ class PathWavefront {
   /// Fills order_, and tells the job.
   void set_order(OpenJobs::Job& opened);
   struct PixelSample {
-    uint32_t pixel;   ///< Of the picture.
-    uint32_t sample;  ///< Of the pixel.
+    uint32_t pixel;   ///< Number in the picture.
+    uint32_t sample;  ///< Number in the pixel.
   };
   /// @param number of the job's samples, pixel by pixel
   PixelSample pixel_sample_of(const PathJob& job, std::size_t number) const;
@@ -210,12 +210,12 @@ class PathWavefront {
   bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
   /// @param albedo of what would scatter it
   void count_cut(const ScenePath& path, const SampledSpectrum& albedo);
-  /// By Russian roulette.
+  /// Decides by Russian roulette whether a path goes on.
   /// @param u in (0, 1)
   /// @return false if the path has ended
   bool survives(ScenePath& path, float u) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
-  /// The same in a new direction.
+  /// Sends a path on in a new direction.
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
   /// The medium of the scene, and its component, in which a collision takes place.
   MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component) const;
@@ -272,7 +272,7 @@ class PathWavefront {
     uint32_t slot = 0;
     bool in_rgb = false;  ///< Whether the light is.
     const PhaseFunction* phase = nullptr;
-    ShadowEnd end;             ///< Of the shadow ray.
+    ShadowEnd end;             ///< End of the shadow ray.
     SampledSpectrum radiance;  ///< What the light brings unshadowed, times the density of the draw.
   };
   /// How the component scatters that the scattering before was of.

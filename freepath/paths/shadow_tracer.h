@@ -76,11 +76,11 @@ class ShadowTracer {
                 float end);
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
   void trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// The same from side to side of a domain that repeats.
+  /// Traces a ray from side to side of a domain that repeats.
   void trace_domain(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// The same of a ray that meets no side.
+  /// Traces a ray that meets no side.
   void trace_part(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// The same where surfaces have holes or are there in part: place by place.
+  /// Traces a ray where surfaces have holes or are there in part: one position after the other.
   void trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
   /// Whether a ray goes on at a surface, which it crosses then; what is there in part takes its
   /// part.

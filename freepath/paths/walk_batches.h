@@ -19,7 +19,7 @@ class WalkBatches {
     const Walker* walker = nullptr;
     RayStream rays;
     std::vector<uint32_t> owners;  ///< What the caller calls each ray; there may be room for more.
-    std::size_t count = 0;         ///< Of rays.
+    std::size_t count = 0;         ///< Number of rays.
   };
 
   /// @param capacity rays that there will be, or more
@@ -52,7 +52,7 @@ class WalkBatches {
     return {batch, slot};
   }
 
-  /// Those that hold rays, their streams of the right size. To be called after the last ray.
+  /// Batches that hold rays, their streams of the right size. To be called after the last ray.
   std::vector<Batch*>& finish();
 
  private:

@@ -33,7 +33,7 @@ class AxisRange {
 
 /// How far an axis reaches beyond the values on its own accord.
 enum class AxisRoom {
-  kNone,   ///< Not at all.
+  kNone,   ///< No room.
   kLittle  ///< A few percent, to a round value where it is linear.
 };
 

@@ -30,7 +30,7 @@ GridShape grid_over(const Box3f& box, int resolution);
 struct BrickRegion {
   Vec3i first;       ///< First voxel.
   Vec3f centre;      ///< World.
-  float radius = 0;  ///< Of the sphere around all its voxel centres [world].
+  float radius = 0;  ///< Radius of the sphere around all its voxel centres [world].
 };
 
 /// Fills the values of a brick, 512 for each field one after the other, zero at first. False: it is
@@ -75,7 +75,7 @@ class SphereUnion {
 
   float distance(const Vec3f& point) const;
   Box3f bounds() const;
-  /// Those spheres that the distance may come from at some point within `radius` of `centre`.
+  /// The spheres that the distance may come from at some point within `radius` of `centre`.
   SphereUnion near(const Vec3f& centre, float radius) const;
   /// Moves and scales all spheres: centre · scale + offset.
   void transform(float scale, const Vec3f& offset);
@@ -84,7 +84,7 @@ class SphereUnion {
   std::vector<Sphere> spheres_;
 };
 
-/// As sample_voxels, for a shape that is made of spheres.
+/// Samples the voxels of a brick, for a shape that is made of spheres: see sample_voxels.
 /// @param warp how far points are pushed before their distance to the spheres is taken [world]
 /// @param outward how far the shape reaches beyond the spheres [world]
 /// @param at (point of the world, the spheres that matter there) → values

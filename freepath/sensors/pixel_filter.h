@@ -43,7 +43,7 @@ using FilterModel =
 
 /// Where to take a sample of a pixel, and what it counts.
 struct FilterSample {
-  float x, y;    ///< From the pixel's centre [pixels].
+  float x, y;    ///< Offset from the pixel's centre [pixels].
   float weight;  ///< f / density; 1 on average.
 };
 

@@ -13,8 +13,8 @@ namespace freepath {
 struct ColorScale {
   double low = 0, high = 1;
   bool logarithmic = false;
-  /// From blue over white to red, for values on both sides of the middle; else from dark to bright
-  /// (the colours of viridis).
+  /// Whether colours go from blue over white to red, for values on both sides of the middle; else
+  /// from dark to bright (the colours of viridis).
   bool diverging = false;
 
   /// Position on the scale, 0 to 1; beyond its ends the ends.

@@ -25,7 +25,7 @@ inline constexpr int kLabCell = 16;
 /// applies and free paths have a closed form (lab_curves.h); it goes on beyond the ray on all
 /// sides, so that the bounds of super-voxels are those of the function.
 struct LabSetting {
-  std::string name;     ///< On the command line.
+  std::string name;     ///< Name on the command line.
   std::string summary;  ///< One line for users.
   std::shared_ptr<const Medium> medium;
   int channels = 1;  ///< 1 where all are equal.

@@ -24,7 +24,7 @@ class RayMedium {
     Vec3d origin;             ///< Place in the grid of voxels that walk space has; see WalkSpace.
     Vec3d direction;          ///< [voxels per world unit]
     double begin = 0;         ///< Where it enters the medium [world].
-    double length = 0;        ///< From there to its end [world]; 0 if it misses.
+    double length = 0;        ///< Length from there to its end [world]; 0 if it misses.
     double voxel_length = 0;  ///< Way in which it passes an edge length of a voxel [world].
   };
 
@@ -42,8 +42,8 @@ class RayMedium {
   struct Cell {
     double begin = 0;
     double end = 0;
-    /// Of each component: Σ_j density[j] s^j with s from 0 to 1 along the part. Without
-    /// interpolation next() sets density[0] alone, and the others stay 0.
+    /// Polynomial of each component's density: Σ_j density[j] s^j with s from 0 to 1 along the
+    /// part. Without interpolation next() sets density[0] alone, and the others stay 0.
     std::array<std::array<double, 4>, Medium::kMaxComponents> density{};
   };
 
@@ -67,7 +67,7 @@ class RayMedium {
    private:
     /// The way through the voxels of a component, or of all where they are aligned.
     struct Track {
-      Path path;  ///< In those voxels.
+      Path path;  ///< Path in those voxels.
       GridSteps steps;
       Vec3i base;       ///< The present cell,
       double exit = 0;  ///< and where the path leaves it.
@@ -112,7 +112,7 @@ class RayMedium {
                               const Vec3d& step) const;
 
   MediumView view_;
-  std::vector<int> numbers_;  ///< Of the components that count.
+  std::vector<int> numbers_;  ///< Numbers of the components that count.
 };
 
 }  // namespace freepath
