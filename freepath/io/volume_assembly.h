@@ -107,8 +107,8 @@ class GridLayout {
 /// What was found among values that are active or not 0. Merging doesn't depend on the order.
 struct ValueScan {
   struct Bad {
-    uint64_t rank =
-        0;  ///< Position in the order of the grid; the first bad value is the one reported.
+    /// Position in the order of the grid; the first bad value is the one reported.
+    uint64_t rank = 0;
     Vec3i voxel;
     double value = 0;
   };
