@@ -44,6 +44,8 @@ struct PathSetup {
   /// Which shadow rays are cast; null: all.
   const ShadowGuide* shadow_guide = nullptr;
   std::size_t slots = kPathsInFlight;
+  /// Pixels of the camera along the edge of a pixel of the film.
+  float pixel_edge = 1;
   /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const SampleSpectra>> colors;
   uint32_t first_set = 0;
@@ -91,6 +93,7 @@ class PathWavefront {
   struct PixelSample {
     uint32_t pixel;   ///< Number in the picture.
     uint32_t sample;  ///< Number in the pixel.
+    uint32_t set;     ///< Of the wavelengths.
   };
   /// @param number of the job's samples, pixel by pixel
   PixelSample pixel_sample_of(const PathJob& job, std::size_t number) const;
@@ -101,9 +104,8 @@ class PathWavefront {
   /// Takes in the paths that have ended, and the jobs that have with them; others start in their
   /// places.
   void end_paths(const PathJobSource& jobs, Film& film);
-  /// @param pixel of the picture
-  const SampleSpectra& colors_of(uint32_t pixel, uint32_t sample) const {
-    return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
+  const SampleSpectra& colors_of(const PixelSample& sample) const {
+    return *setup_.colors[sample.set - setup_.first_set];
   }
   /// Puts the ray of a path among those that fly next.
   void send(std::size_t slot);
