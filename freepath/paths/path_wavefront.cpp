@@ -22,6 +22,7 @@ PathWavefront::PathWavefront(const PathSetup& setup)
     : setup_(setup),
       scene_(*setup.scene),
       meter_(setup.meter),
+      has_sides_(scene_.domain || (meter_ != nullptr && !meter_->splits.empty())),
       media_sets_(*setup.scene, *setup.factory),
       paths_(setup.slots),
       slots_(setup.slots),

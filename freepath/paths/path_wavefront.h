@@ -2,6 +2,7 @@
 /// @file A wavefront of paths through a scene of media, surfaces and lights.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -116,7 +117,8 @@ class PathWavefront {
   void fly();
   /// Where no collision has ended a ray.
   void end_flight(std::size_t slot);
-  void set_side(ScenePath& path) const;
+  /// Sets the length of a ray up to a side of the domain, or a plane where paths split.
+  void set_side(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   void pass_side(ScenePath& path);
   void take_flight(const WalkBatches::Batch& batch, std::size_t i);
   /// Takes the ray of a path back from a stream, if it lies there alone.
@@ -216,6 +218,10 @@ class PathWavefront {
   /// @param u in (0, 1)
   /// @return false if the path has ended
   bool survives(ScenePath& path, float u) const;
+  /// Largest magnitude of a path's throughput; no number below infinity if a channel is none.
+  float magnitude(const ScenePath& path) const {
+    return meter_ != nullptr ? std::abs(path.throughput[0]) : largest_magnitude(path.throughput);
+  }
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   /// Sends a path on in a new direction.
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
@@ -253,7 +259,8 @@ class PathWavefront {
 
   const PathSetup& setup_;
   const PathScene& scene_;
-  const FluxMeter* meter_;  // of the setup
+  const FluxMeter* meter_;  // of the setup; its paths carry the first channel alone
+  bool has_sides_;          // whether rays end at sides of a domain, or at planes
   MediaSetTable media_sets_;
   MediaSetId camera_media_ = 0;
   std::optional<Box3f> everything_;                        // around the medium, if that is all
