@@ -56,6 +56,10 @@ class Measures(unittest.TestCase):
         mirrored = [(means, blocks[::-1]) for means, blocks in ramp]
         self.assertGreater(measures.agreement(ramp, mirrored)["blocks"], 0.3)
 
+    def test_rounding_of_pixels_without_noise_is_no_difference(self):
+        self.assertLess(abs(measures.z_score([0.02] * 6, [0.020000001] * 6)), 1)
+        self.assertGreater(abs(measures.z_score([0.02] * 6, [0.0202] * 6)), 4)
+
     def test_interval_of_ratios_is_that_of_student(self):
         # Logs 0, 1, 2: mean 1, standard deviation 1, so 1 ± 4.303 / sqrt(3).
         center, low, high = measures.ratio_interval([1, 2.718281828, 7.389056099])
