@@ -23,20 +23,11 @@ RandomStream NearLightLines::numbers(uint64_t seed, const ScenePath& path) {
   return {seed, path.pixel, path.sample_key, stream_of(StreamPurpose::kScatter, path)};
 }
 
-void NearLightLines::add(uint32_t slot, const ScenePath& path, const Vec3f& origin,
-                         const Vec3f& direction, const std::optional<NearLights::Point>& point,
-                         float factor, RandomStream& random) {
-  if (!point) return;
+void NearLightLines::add(const Line& line, const Vec3f& origin, const ScenePath& path) {
   const Walker& walker = path.colors->walker(path.medium, path.channel);
   auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(lines_.size()));
-  // Braces keep the order of draws.
-  lines_.push_back({.slot = slot,
-                    .light = point->light,
-                    .weight = point->weight * factor,
-                    .position = origin + direction * point->t,
-                    .direction = direction,
-                    .u = {random.uniform(), random.uniform()}});
-  set_ray(batch.rays, i, origin, direction, point->t);
+  lines_.push_back(line);
+  set_ray(batch.rays, i, origin, line.direction, line.t);
   batch.rays.pixel[i] = path.pixel;
   batch.rays.sample[i] = path.sample_key;
   batch.rays.stream[i] = stream_of(StreamPurpose::kShadowWalk, path);

@@ -29,8 +29,9 @@ constexpr auto kPi = std::numbers::pi_v<float>;
 constexpr uint32_t kDirections = 64;
 constexpr float kStep = 0.7F;
 constexpr int kSteps = 60;
-/// Radius of a ball over that of a sphere around its light, at least.
-constexpr float kSmallest = 4;
+/// Radius of a ball over that of a sphere around its light, at least: light of larger ones, which
+/// paths find by chance too, varies little.
+constexpr float kSmallest = 32;
 /// Streams that no path has.
 constexpr uint32_t kStream = 0xFFFFFFFBU;
 
@@ -48,6 +49,35 @@ Interval clip(const Box3f& box, const Vec3f& origin, const Vec3f& direction, Int
     if (std::isnan(a) || std::isnan(b)) continue;  // along a side
     part.begin = std::max(part.begin, std::min(a, b));
     part.end = std::min(part.end, std::max(a, b));
+  }
+  return part;
+}
+
+/// The part of a ray in a cone of less than a half.
+/// @param nearest point of the ray to the cone's tip, relative to that
+/// @param closest its distance along the ray
+Interval clip_by_cone(const Vec3f& axis, float cosine, const Vec3f& nearest, const Vec3f& direction,
+                      float closest, Interval part) {
+  // Where (b + s a)² = cosine² (h² + s²), s counted from that point.
+  const float a = direction.dot(axis);
+  const float b = nearest.dot(axis);
+  const float cosine2 = cosine * cosine;
+  const float squares = a * a - cosine2;
+  const float rest = b * b - cosine2 * nearest.length2();
+  const float discriminant = a * a * b * b - squares * rest;
+  if (squares == 0) return part;
+  if (discriminant < 0) return squares < 0 ? Interval{} : part;
+  const float root = std::sqrt(discriminant);
+  const float first = (-a * b + (squares < 0 ? root : -root)) / squares;
+  const float second = (-a * b + (squares < 0 ? -root : root)) / squares;
+  if (squares < 0) {  // between both, if that is before the tip and not behind it
+    if (b + 0.5F * (first + second) * a <= 0) return {};
+    part.begin = std::max(part.begin, closest + first);
+    part.end = std::min(part.end, closest + second);
+  } else if (a > 0) {
+    part.begin = std::max(part.begin, closest + second);
+  } else {
+    part.end = std::min(part.end, closest + first);
   }
   return part;
 }
@@ -137,12 +167,17 @@ void NearLights::find_lights(const PathScene& scene) {
   const std::vector<LightBounds>& lights = scene.lights->within();
   for (uint32_t i = 0; i < lights.size(); ++i) {
     if (!(lights[i].power > 0)) continue;
-    const Vec3f middle = lights[i].box.center();
-    balls_.push_back({i,
-                      middle,
-                      0.5F * lights[i].box.size().length(),
-                      static_cast<float>(lights[i].power),
-                      {}});
+    const LightBounds& light = lights[i];
+    Ball ball{.light = i,
+              .middle = light.box.center(),
+              .size = 0.5F * light.box.size().length(),
+              .power = static_cast<float>(light.power),
+              .squared_radii = {}};
+    if (ball.size == 0 && light.normals.cosine == 1 && light.cosine_reach > 0) {
+      ball.axis = light.normals.axis;
+      ball.cosine = light.cosine_reach;
+    }
+    balls_.push_back(std::move(ball));
   }
   std::stable_sort(balls_.begin(), balls_.end(),
                    [](const Ball& a, const Ball& b) { return a.power > b.power; });
@@ -164,7 +199,8 @@ void NearLights::find_radii(const WavelengthSampler& factory, uint64_t seed) {
         if (mean_transmittance(walker, ball.middle, radius) >= wanted_transmittance()) break;
       }
       radius *= scale_radius();
-      if (radius <= distance_to(bounds_[i], ball.middle) || radius < kSmallest * ball.size) continue;
+      if (radius <= distance_to(bounds_[i], ball.middle) || radius < kSmallest * ball.size)
+        continue;
       ball.squared_radii[i] = radius * radius;
     }
   }
@@ -188,6 +224,9 @@ std::optional<NearLights::Passed> NearLights::pass(const Ball& ball, std::size_t
   const float half = std::sqrt(squared - height2);
   Interval part{std::max(closest - half, 0.0F), std::min(closest + half, length)};
   if (medium < bounds_.size()) part = clip(bounds_[medium], origin, direction, part);
+  if (ball.cosine > 0) {
+    part = clip_by_cone(ball.axis, ball.cosine, direction * closest - to, direction, closest, part);
+  }
   if (!(part.begin < part.end)) return std::nullopt;
   const float height = std::sqrt(height2 + soften(ball.size, squared));
   const float begin = std::atan((part.begin - closest) / height);
@@ -229,9 +268,8 @@ std::optional<NearLights::Point> NearLights::sample(MediumId medium, const Vec3f
 }
 
 std::optional<NearLights::Point> NearLights::sample_on(uint32_t ball, MediumId medium,
-                                                       const Vec3f& origin,
-                                                       const Vec3f& direction, float length,
-                                                       RandomStream& random) const {
+                                                       const Vec3f& origin, const Vec3f& direction,
+                                                       float length, RandomStream& random) const {
   const auto passed = pass(balls_[ball], number_of(medium), origin, direction, length);
   if (!passed) return std::nullopt;
   return point_on(*passed, random.uniform());
@@ -247,8 +285,8 @@ std::optional<NearLights::Aim> NearLights::aim(MediumId medium, const Vec3f& pos
     const float squared = ball.squared_radii[number];
     if (squared == 0) continue;
     const float distance2 = (ball.middle - position).length2();
-    weights[i] =
-        ball.power * widest_angle(distance2, squared) / std::sqrt(distance2 + soften(ball.size, squared));
+    weights[i] = ball.power * widest_angle(distance2, squared) /
+                 std::sqrt(distance2 + soften(ball.size, squared));
     sum += weights[i];
   }
   if (sum == 0) return std::nullopt;
@@ -257,8 +295,8 @@ std::optional<NearLights::Aim> NearLights::aim(MediumId medium, const Vec3f& pos
   const float distance2 = to.length2();
   const float squared = balls_[i].squared_radii[number];
   const float u = random.uniform();
-  const float angle = distance2 < squared ? kPi * (1 - std::sqrt(1 - u))
-                                          : u * widest_angle(distance2, squared);
+  const float angle =
+      distance2 < squared ? kPi * (1 - std::sqrt(1 - u)) : u * widest_angle(distance2, squared);
   const float azimuth = 2 * kPi * random.uniform();
   const TangentFrame frame(distance2 > 0 ? to / std::sqrt(distance2) : Vec3f(0, 0, 1));
   const float sine = std::sin(angle);

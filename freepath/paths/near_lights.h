@@ -23,7 +23,8 @@ namespace freepath {
 /// Immutable; threads share it.
 class NearLights {
  public:
-  /// More lights than these have no balls: every ray looks at all of them. Those of most power have.
+  /// More lights than these have no balls: every ray looks at all of them. Those of most power
+  /// have.
   static constexpr std::size_t kMostLights = 64;
 
   /// @param seed of the estimates of transmittance
@@ -58,8 +59,8 @@ class NearLights {
   /// A ray for one light.
   struct Aim {
     uint32_t ball = 0;
-    Vec3f direction;          ///< Unit [world].
-    float probability = 0;    ///< Of the choice of the light.
+    Vec3f direction;        ///< Unit [world].
+    float probability = 0;  ///< Of the choice of the light.
   };
   /// Draws a light for a scattering in a medium, and a direction about that of the light: after a
   /// point is drawn on that ray by sample_on(), both are as dense as the product of the inverse
@@ -81,6 +82,8 @@ class NearLights {
     Vec3f middle;
     float size = 0;  // of the light: radius of a sphere around it
     float power = 0;
+    Vec3f axis{0, 0, 1};               // of the cone that a light without extent shines into
+    float cosine = -1;                 // of half its opening; -1: everywhere
     std::vector<float> squared_radii;  // in each medium, then in combinations of them
   };
 

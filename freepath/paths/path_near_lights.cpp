@@ -11,13 +11,6 @@ enum Sum : uint32_t { kInWavelengths = 0, kInRgb = 1 };
 /// Share of the lines from scatterings that take the directions of their paths.
 constexpr float kPathDirections = 0.5F;
 
-bool is_even(const SampledSpectrum& values, int channels) {
-  for (int c = 1; c < channels; ++c) {
-    if (values[c] != values[0]) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 void PathWavefront::send_near_line(std::size_t slot, float length) {
@@ -26,7 +19,7 @@ void PathWavefront::send_near_line(std::size_t slot, float length) {
   RandomStream random = NearLightLines::numbers(setup_.seed, path);
   const auto point =
       setup_.near_lights->sample(path.medium, path.origin, path.direction, length, random);
-  near_lines_->add(static_cast<uint32_t>(slot), path, path.origin, path.direction, point, 1, random);
+  if (point) add_near_line(slot, path.origin, path.direction, *point, 1, random);
 }
 
 void PathWavefront::draw_near_line(std::size_t i) {
@@ -46,54 +39,68 @@ void PathWavefront::draw_near_line(std::size_t i) {
   if (random.uniform() < kPathDirections) {
     direction = {scatterings_.next[0][i], scatterings_.next[1][i], scatterings_.next[2][i]};
   } else {
-    value = scattering.phase->evaluate({scatterings_.direction[0][i], scatterings_.direction[1][i],
-                                        scatterings_.direction[2][i]},
-                                       direction);
+    value = scattering.phase->evaluate(
+        {scatterings_.direction[0][i], scatterings_.direction[1][i], scatterings_.direction[2][i]},
+        direction);
   }
   const float density =
       kPathDirections * value +
       (1 - kPathDirections) * lights.aim_pdf(aim->ball, path.medium, position, direction);
   const float length = scene_.way_to_surface(path.medium, position, direction);
-  const auto point =
-      lights.sample_on(aim->ball, path.medium, position, direction, length, random);
-  near_lines_->add(scattering.slot, path, position, direction, point,
-                   value / (density * aim->probability), random);
+  const auto point = lights.sample_on(aim->ball, path.medium, position, direction, length, random);
+  if (!point) return;
+  add_near_line(scattering.slot, position, direction, *point, value / (density * aim->probability),
+                random);
+}
+
+void PathWavefront::add_near_line(std::size_t slot, const Vec3f& origin, const Vec3f& direction,
+                                  const NearLights::Point& point, float factor,
+                                  RandomStream& random) {
+  const ScenePath& path = paths_[slot];
+  NearLightLines::Line line{.slot = static_cast<uint32_t>(slot),
+                            .t = point.t,
+                            .factor = point.weight * factor,
+                            .in_rgb = sees_rgb(path),  // then media don't tell colours apart
+                            .position = origin + direction * point.t,
+                            .direction = direction};
+  // Braces keep the order of draws.
+  const std::array<float, 2> u{random.uniform(), random.uniform()};
+  line.light = with_alpha(scene_.lights->sample_of(point.light, line.position,
+                                                   light_spectra(path, line.in_rgb), u[0], u[1]),
+                          line.position);
+  if (!(line.light.pdf > 0) || is_black(line.light.radiance)) return;
+  line.light_share = scene_.lights->share_of(point.light, line.position);
+  near_lines_->add(line, origin, path);
 }
 
 void PathWavefront::light_near_line(const NearLightLines::Line& line) {
   const ScenePath& path = paths_[line.slot];
+  const LightSample& light = line.light;
   const MediumWalkers::Origin scatterer = scatterer_of(path, line.component);
   const PhaseFunction& phase = scene_.media[scatterer.medium].phase(scatterer.component);
-  const bool in_rgb = sees_rgb(path) && is_even(line.scattered, path.colors->spectra.channels());
-  const LightSample light = with_alpha(
-      scene_.lights->sample_of(line.light, line.position, light_spectra(path, in_rgb), line.u[0],
-                               line.u[1]),
-      line.position);
-  if (!(light.pdf > 0)) return;
   const float value = phase.evaluate(line.direction, light.direction);
   // The share that a draw of the light at a scattering would have beside paths that find it.
-  const float drawn = light.pdf * scene_.lights->share_of(line.light, line.position);
+  const float drawn = light.pdf * line.light_share;
   const float share = light.delta ? 1.0F : drawn / (drawn + value);
-  const SampledSpectrum scattered = in_rgb ? SampledSpectrum(line.scattered[0]) : line.scattered;
-  const SampledSpectrum radiance = light_throughput(path, in_rgb) * scattered * light.radiance *
-                                   (line.weight * value * share / light.pdf);
+  const SampledSpectrum radiance = light_throughput(path, line.in_rgb) * line.scattered *
+                                   light.radiance * (line.factor * value * share / light.pdf);
   if (is_black(radiance)) return;
   near_shadows_->add(line.slot, path, line.position, light.direction, shadow_end(light), path.place,
-                     radiance, in_rgb, in_rgb ? kInRgb : kInWavelengths);
+                     radiance, line.in_rgb, line.in_rgb ? kInRgb : kInWavelengths);
 }
 
 void PathWavefront::trace_near_lines() {
   near_lines_->trace(paths_, counts_.shadow_rays,
                      [&](const NearLightLines::Line& line) { light_near_line(line); });
-  near_shadows_->trace(
-      paths_, counts_.shadow_rays,
-      [&](ScenePath& path, uint32_t sum, const SampledSpectrum& radiance) {
-        const SampledSpectrum none;
-        (sum == kInRgb ? path.rgb : path.radiance) += radiance;
-        if (!jobs_.layers.on()) return;
-        jobs_.layers.ahead(path.result, sum == kInRgb ? rgb_of(path, none, radiance)
-                                                      : rgb_of(path, radiance, none));
-      });
+  near_shadows_->trace(paths_, counts_.shadow_rays,
+                       [&](ScenePath& path, uint32_t sum, const SampledSpectrum& radiance) {
+                         const SampledSpectrum none;
+                         (sum == kInRgb ? path.rgb : path.radiance) += radiance;
+                         if (!jobs_.layers.on()) return;
+                         jobs_.layers.ahead(path.result, sum == kInRgb
+                                                             ? rgb_of(path, none, radiance)
+                                                             : rgb_of(path, radiance, none));
+                       });
 }
 
 }  // namespace freepath

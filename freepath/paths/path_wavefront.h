@@ -193,6 +193,10 @@ class PathWavefront {
   void send_near_line(std::size_t slot, float length);
   /// The same for a scattering in the queue, whose ray need not be that of the path.
   void draw_near_line(std::size_t scattering);
+  /// Draws a point of a light for a point of a ray.
+  /// @param factor of the path's throughput by which it counts
+  void add_near_line(std::size_t slot, const Vec3f& origin, const Vec3f& direction,
+                     const NearLights::Point& point, float factor, RandomStream& random);
   /// Traces light by way of the points that were drawn.
   void trace_near_lines();
   /// Casts a ray to its light from a point that was drawn.
