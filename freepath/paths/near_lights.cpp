@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -15,15 +14,8 @@
 namespace freepath {
 namespace {
 
-/// Mean transmittance from a light to the edge of its ball.
-double wanted_transmittance() {
-  const char* const t = std::getenv("FP_T");
-  return t != nullptr ? std::atof(t) : 0.37;
-}
-double scale_radius() {
-  const char* const t = std::getenv("FP_R");
-  return t != nullptr ? std::atof(t) : 1;
-}
+/// Mean transmittance from a light to the edge of its ball, at least.
+constexpr double kTransmittance = 0.37;
 constexpr auto kPi = std::numbers::pi_v<float>;
 /// Directions from a light, and steps between a ball that is too large and one that is not.
 constexpr uint32_t kDirections = 64;
@@ -196,9 +188,8 @@ void NearLights::find_radii(const WavelengthSampler& factory, uint64_t seed) {
     for (Ball& ball : balls_) {
       float radius = farthest_of(bounds_[i], ball.middle);
       for (int step = 0; step < kSteps; ++step, radius *= kStep) {
-        if (mean_transmittance(walker, ball.middle, radius) >= wanted_transmittance()) break;
+        if (mean_transmittance(walker, ball.middle, radius) >= kTransmittance) break;
       }
-      radius *= scale_radius();
       if (radius <= distance_to(bounds_[i], ball.middle) || radius < kSmallest * ball.size)
         continue;
       ball.squared_radii[i] = radius * radius;

@@ -85,7 +85,7 @@ void PathWavefront::light_near_line(const NearLightLines::Line& line) {
   const SampledSpectrum radiance = light_throughput(path, line.in_rgb) * line.scattered *
                                    light.radiance * (line.factor * value * share / light.pdf);
   if (is_black(radiance)) return;
-  near_shadows_->add(line.slot, path, line.position, light.direction, shadow_end(light), path.place,
+  near_shadows_->add(line.slot, path, line.position, light.direction, shadow_end(light), path.media,
                      radiance, line.in_rgb, line.in_rgb ? kInRgb : kInWavelengths);
 }
 

@@ -196,9 +196,9 @@ void Experiment::get_references() {
   const double share = reference_share();
   for (const Configuration& configuration : configurations_) {
     const bool is_nearest = configuration.interpolation == Interpolation::kNearest;
-    std::optional<std::size_t>& place = is_nearest ? nearest : trilinear;
-    if (!place) {
-      place = result_.references.size();
+    std::optional<std::size_t>& index = is_nearest ? nearest : trilinear;
+    if (!index) {
+      index = result_.references.size();
       Configuration standard;
       if (is_nearest) standard.interpolation = Interpolation::kNearest;
       if (nearest && trilinear && !settings_.reference.file.empty()) {
@@ -213,7 +213,7 @@ void Experiment::get_references() {
       if (reference.estimates.mean.empty()) throw Interrupted("interrupted: nothing is written");
       result_.references.push_back(std::move(reference));
     }
-    result_.reference_of.push_back(*place);
+    result_.reference_of.push_back(*index);
   }
 }
 

@@ -45,14 +45,14 @@ class Picture:
     Arrays are views of the picture's own memory, and read-only.
     """
 
-    __slots__ = ("_core", "_facts", "_pixels", "_places")
+    __slots__ = ("_core", "_facts", "_pixels", "_indices")
 
     def __init__(self, core: _freepath.Picture, facts: Callable[[], Facts] | None = None) -> None:
         self._core = core
         self._facts = facts
         pixels: Any = core.pixels
         self._pixels: NDArray[np.float32] = pixels
-        self._places = {name: i for i, name in enumerate(core.channels)}
+        self._indices = {name: i for i, name in enumerate(core.channels)}
 
     @property
     def image(self) -> NDArray[np.float32]:
@@ -77,7 +77,7 @@ class Picture:
     def layers(self) -> Mapping[str, NDArray[np.float32]]:
         """Layers by name, each of shape (height, width) or (height, width, 3): docs/pictures.md."""
         groups: dict[str, list[str]] = {}
-        for name in self._places:
+        for name in self._indices:
             if name not in "RGBA":
                 groups.setdefault(name.rpartition(".")[0] or name, []).append(name)
         return {group: self._named(*names) for group, names in groups.items()}
@@ -121,13 +121,13 @@ class Picture:
         return self.png(view="neutral")
 
     def _named(self, *names: str) -> NDArray[np.float32]:
-        """Channels of consecutive places, as a view."""
-        places = [self._places[name] for name in names]
-        if len(places) == 1:
-            return self._pixels[..., places[0]]
-        if places == list(range(places[0], places[-1] + 1)):
-            return self._pixels[..., places[0] : places[-1] + 1]
-        return self._pixels[..., places]
+        """Channels of consecutive indices, as a view."""
+        indices = [self._indices[name] for name in names]
+        if len(indices) == 1:
+            return self._pixels[..., indices[0]]
+        if indices == list(range(indices[0], indices[-1] + 1)):
+            return self._pixels[..., indices[0] : indices[-1] + 1]
+        return self._pixels[..., indices]
 
     def __repr__(self) -> str:
         height, width = self._pixels.shape[:2]
@@ -154,6 +154,7 @@ def render(
     max_scatterings: int | None = None,
     wavelengths: int = 4,
     shadow_roulette: bool = True,
+    near_light_lines: bool = True,
     progress: Callable[[Progress], Any] | bool | None = None,
     threads: int = 0,
     simd: str = "best",
@@ -187,6 +188,8 @@ def render(
             the scene's file.
         wavelengths: of a path, where color is "spectral".
         shadow_roulette: whether shadow rays that bring little are cast by Russian roulette.
+        near_light_lines: whether light of lights in or near media is found along lines that pass
+            them, so that the variance has an end; else at scatterings alone.
         progress: called some times a second with a `Progress`, by the thread that called `render`;
             False ends the rendering soon, and what there is is returned. True: shows it on standard
             error, in Jupyter with a picture that grows.
@@ -208,7 +211,7 @@ def render(
         layers=layers, crop=crop, tile=tile, tracker=tracker, estimator=estimator,
         interpolation=interpolation, absorption=absorption, emission=emission,
         max_scatterings=max_scatterings, wavelengths=wavelengths, shadow_roulette=shadow_roulette,
-        threads=threads, simd=simd,
+        near_light_lines=near_light_lines, threads=threads, simd=simd,
     )  # fmt: skip
     shown: Any = None
     if progress is True:
@@ -247,6 +250,7 @@ def radiance(
     max_scatterings: int | None = None,
     wavelengths: int = 4,
     shadow_roulette: bool = True,
+    near_light_lines: bool = True,
     threads: int = 0,
     simd: str = "best",
 ) -> Estimate:
@@ -261,7 +265,7 @@ def radiance(
         directions: of shape (..., 3), away from the sensor; scaled to unit vectors.
         spp: samples of each ray [64]; two at least, if the error is to mean something.
         seed, color, tracker, estimator, interpolation, absorption, emission, max_scatterings,
-        wavelengths, shadow_roulette, threads, simd: as `render` has them.
+        wavelengths, shadow_roulette, near_light_lines, threads, simd: as `render` has them.
 
     Returns:
         Mean and standard error of R, G and B (linear), float64 of shape (..., 3).
@@ -272,7 +276,7 @@ def radiance(
     """
     options = common_options(
         scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
-        max_scatterings, wavelengths, shadow_roulette, threads, simd,
+        max_scatterings, wavelengths, shadow_roulette, near_light_lines, threads, simd,
     )  # fmt: skip
     options.layers = "variance"
     rays = Rays(origins, directions, np.inf)

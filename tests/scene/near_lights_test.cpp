@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <fmt/format.h>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include <cmath>
 #include <functional>
@@ -64,8 +64,8 @@ double scattered_once(double sigma_a, double sigma_s, double g, double height,
 }
 
 constexpr double kHeight = 0.04;
-const std::string kPoint = fmt::format(
-    "LightSource \"point\" \"rgb I\" [ 2 2 2 ] \"point3 from\" [ {} 0 0 ]\n", kHeight);
+const std::string kPoint =
+    fmt::format("LightSource \"point\" \"rgb I\" [ 2 2 2 ] \"point3 from\" [ {} 0 0 ]\n", kHeight);
 double two(const Vec3d& /*direction*/) { return 2; }
 
 TEST(NearLights, PointInGreyFogIsThatOfQuadrature) {
@@ -153,7 +153,6 @@ LightSource "spot" "rgb I" [ 3 6 9 ] "point3 from" [ -0.4 0.2 0.1 ] "point3 to" 
 MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.2 0.1 ] "rgb sigma_s" [ 0.7 0.7 0.8 ] "float g" 0.6
 MakeNamedMedium "cloud" "string type" "uniformgrid" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 2 2 1 ]
   "integer nx" 3 "integer ny" 2 "integer nz" 1 "float density" [ 1 0.3 0 0.5 1 0.8 ] "point3 p0" [ -0.7 -0.7 -0.7 ] "point3 p1" [ 0.6 0.7 0.7 ]
-MakeNamedMedium "none" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0 0 0 ]
 )" + medium_box("fog", Vec3d(-1), Vec3d(1)) +
     medium_box("cloud", Vec3d(-0.7), Vec3d(0.6, 0.7, 0.7), "fog") +
     R"(AttributeBegin Material "diffuse" "rgb reflectance" [ 0.7 0.5 0.3 ]
@@ -162,8 +161,6 @@ AttributeBegin Material "conductor" "float roughness" 0.3 Translate 0 0.1 -0.3
   Shape "sphere" "float radius" 0.2 AttributeEnd
 )";
 
-// The mean over pictures whose largest values are cut off: lines leave no rare bright ones, paths
-// alone do, so that a difference is to be seen in time only where neither has them.
 TEST(NearLights, AgreesWithScatteringsAloneAmongSurfacesAndOverlappingMedia) {
   for (const ColorMode mode : kColorModes) {
     const Picture on = render_text(kManyThings, {.mode = mode, .samples = 2048});
