@@ -99,7 +99,10 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
       draw_light(vector_at(scatterings_.position, i), light_spectra(path, scattering.in_rgb), u);
   scattering.end = shadow_end(draw);
   scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance;
-  scatterings_.light_pdf[i] = draw.pdf;
+  const bool has_line =
+      setup_.near_lights != nullptr && draw.within &&
+      setup_.near_lights->has_line(*draw.within, path.medium, vector_at(scatterings_.position, i));
+  scatterings_.light_pdf[i] = has_line ? 0 : draw.pdf;
   scatterings_.light_found[i] = draw.delta ? 0.0F : 1.0F;
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, draw.distance);
@@ -223,6 +226,7 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
     if (guide != nullptr) draw_emission(i, *guide);
     if (scatterings_.is_given[i] != 0) draw_direction_of(i);
     turn_scattered(i, path);
+    if (near_lines_) draw_near_line(i);
     if (guide != nullptr) {
       const float found =
           guide->pdf(vector_at(scatterings_.position, i), vector_at(scatterings_.next, i));

@@ -30,8 +30,9 @@ void PathWavefront::send(std::size_t slot) {
     return;
   }
   const Walker& walker = path.colors->walker(path.medium, path.channel);
-  write_ray(slot, walker, path.origin, path.direction,
-            path.ends_at_surface ? hit_of(path).t : path.side);
+  const float end = path.ends_at_surface ? hit_of(path).t : path.side;
+  write_ray(slot, walker, path.origin, path.direction, end);
+  if (near_lines_) send_near_line(slot, end);
 }
 
 void PathWavefront::write_ray(std::size_t slot, const Walker& walker, const Vec3f& origin,

@@ -31,6 +31,10 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       kernels_(setup.factory->scattering()),
       shadows_(*setup.scene, media_sets_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
+  if (setup.near_lights != nullptr) {
+    near_lines_.emplace(setup.slots);
+    near_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots, /*is_second=*/true);
+  }
   if (scene_.surfaces) hits_.resize(setup.slots);
   if (!scene_.surfaces && scene_.media.size() == 1 && !scene_.domain && meter_ == nullptr) {
     const Box3d box = scene_.media[0].outer_bounds();
@@ -65,6 +69,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
     while (active_ < setup_.slots && fill(slots_[active_], jobs, film)) ++active_;
     if (active_ == 0) return true;
     if (scope.stopped() || jobs.stop()) return false;
+    if (near_lines_) trace_near_lines();
     fly();
     shadows_.trace(paths_, counts_.shadow_rays,
                    [&](const ScenePath& path, uint32_t cell, const SampledSpectrum& weight) {

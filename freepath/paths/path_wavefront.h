@@ -12,6 +12,8 @@
 #include "freepath/paths/emission_tracer.h"
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
+#include "freepath/paths/near_light_lines.h"
+#include "freepath/paths/near_lights.h"
 #include "freepath/paths/open_jobs.h"
 #include "freepath/paths/path_job.h"
 #include "freepath/paths/path_scene.h"
@@ -44,6 +46,8 @@ struct PathSetup {
   std::optional<bool> samples_emission = {};
   /// Which shadow rays are cast; null: all.
   const ShadowGuide* shadow_guide = nullptr;
+  /// Lights in or near media whose light lines bring; null: scatterings alone do.
+  const NearLights* near_lights = nullptr;
   std::size_t slots = kPathsInFlight;
   /// Pixels of the camera along the edge of a pixel of the film.
   float pixel_edge = 1;
@@ -186,6 +190,21 @@ class PathWavefront {
   void take_only_light(std::size_t scattering, const ScenePath& path);
   /// Draws the light for a scattering in the queue.
   void draw_light_of(std::size_t scattering, const ScenePath& path);
+  /// What the alpha of a light leaves of a draw of it.
+  LightSample with_alpha(LightSample light, const Vec3f& position) const;
+  /// Draws a point for a light that the next ray of a path passes near, if it does.
+  /// @param length of the ray, may be infinite
+  void send_near_line(std::size_t slot, float length);
+  /// The same for a scattering in the queue, whose ray need not be that of the path.
+  void draw_near_line(std::size_t scattering);
+  /// Draws a point of a light for a point of a ray.
+  /// @param factor of the path's throughput by which it counts
+  void add_near_line(std::size_t slot, const Vec3f& origin, const Vec3f& direction,
+                     const NearLights::Point& point, float factor, RandomStream& random);
+  /// Traces light by way of the points that were drawn.
+  void trace_near_lines();
+  /// Casts a ray to its light from a point that was drawn.
+  void light_near_line(const NearLightLines::Line& line);
   /// Says how bright a radiance is to the picture: the mean of the channels, in units of white.
   /// Huge where the shadow ray to a light at that distance does not play.
   float brightness(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb,
@@ -300,6 +319,9 @@ class PathWavefront {
   std::size_t going_on_count_ = 0;
   ShadowTracer shadows_;
   EmissionTracer emissions_;
+  // Where there are lights near media; else null.
+  std::optional<NearLightLines> near_lines_;
+  std::optional<ShadowTracer> near_shadows_;
   OpenJobs jobs_;
   uint32_t newest_ = 0;        // job, whose paths start now
   std::size_t next_path_ = 0;  // of those

@@ -140,7 +140,10 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   }
   std::optional<ShadowGuide> shadow_guide;
   if (settings.shadow_roulette) shadow_guide.emplace(factory, settings.walk.seed);
+  std::optional<NearLights> near_lights;
+  if (settings.near_light_lines) near_lights.emplace(factory, settings.walk.seed);
   PathSetup setup;
+  setup.near_lights = near_lights && !near_lights->is_empty() ? &*near_lights : nullptr;
   setup.shadow_guide = shadow_guide ? &*shadow_guide : nullptr;
   setup.scene = &scene;
   setup.factory = &factory;

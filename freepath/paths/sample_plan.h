@@ -30,13 +30,14 @@ inline constexpr uint32_t kFirstPilotSample = uint32_t{1} << 28;
 /// the squares is 1, as nearly as steps allow.
 ///
 /// For the smallest mean square error in a given time a pixel takes samples in proportion to its
-/// standard deviation over the root of the time of a sample [Kirk91, Sec. 2]. The deviation is that
+/// standard deviation over the root of the time of a sample [Neyman34]. The deviation is that
 /// of the pilot's few samples, averaged over the neighbouring squares; as such estimates err by
 /// factors where a few paths bring most of the light, its square root is taken: half the way, in
 /// powers, that the exact one would ask for. The time of a sample is a constant and its look-ups,
 /// which don't depend on the machine.
 ///
-/// The pilot's samples have no part in the picture, so that its pixels' means stay without bias.
+/// The pilot's samples have no part in the picture, so that its pixels' means stay without bias
+/// [Kirk91].
 /// @param pilot with look-ups recorded
 std::vector<SampleShare> shares_of_pilot(const Film& pilot);
 

@@ -51,6 +51,7 @@ struct RenderOptions {
   int wavelengths = RenderSettings{}.wavelengths;
   int threads = 0;
   bool shadow_roulette = true;
+  bool near_light_lines = true;
 };
 
 ColorMode color_mode(const PythonScene& scene, const RenderOptions& options) {
@@ -69,6 +70,7 @@ RenderSettings render_settings(const PythonScene& scene, const RenderOptions& op
   settings.wavelengths = options.wavelengths;
   settings.threads = options.threads;
   settings.shadow_roulette = options.shadow_roulette;
+  settings.near_light_lines = options.near_light_lines;
   RenderWishes wishes{.samples = options.samples,
                       .seed = options.seed,
                       .max_scatterings = options.max_scatterings,
@@ -316,7 +318,8 @@ void bind_rendering(nb::module_& module) {
       .def_rw("tile", &RenderOptions::tile, nb::for_setter(nb::arg("tile").none()))
       .def_rw("wavelengths", &RenderOptions::wavelengths)
       .def_rw("threads", &RenderOptions::threads)
-      .def_rw("shadow_roulette", &RenderOptions::shadow_roulette);
+      .def_rw("shadow_roulette", &RenderOptions::shadow_roulette)
+      .def_rw("near_light_lines", &RenderOptions::near_light_lines);
   module.def("radiance", &radiance, nb::arg("scene"), nb::arg("options"), nb::arg("origins"),
              nb::arg("directions"), nb::arg("t_max"), nb::arg("width"));
   module.def("first_pilot", &first_pilot, nb::arg("scene"), nb::arg("options"));
