@@ -37,12 +37,12 @@ float hash_noise(int x, int y, int z, uint32_t salt) {
 float mix(float a, float b, float part) { return a + (b - a) * part; }
 
 /// Interpolates between the corners of a cube, x slowest.
-float mix_corners(const std::array<float, 8>& corners, const Vec3f& place) {
-  const float low =
-      mix(mix(corners[0], corners[1], place.z), mix(corners[2], corners[3], place.z), place.y);
-  const float high =
-      mix(mix(corners[4], corners[5], place.z), mix(corners[6], corners[7], place.z), place.y);
-  return mix(low, high, place.x);
+float mix_corners(const std::array<float, 8>& corners, const Vec3f& fraction) {
+  const float low = mix(mix(corners[0], corners[1], fraction.z),
+                        mix(corners[2], corners[3], fraction.z), fraction.y);
+  const float high = mix(mix(corners[4], corners[5], fraction.z),
+                         mix(corners[6], corners[7], fraction.z), fraction.y);
+  return mix(low, high, fraction.x);
 }
 
 float value_noise(const Vec3f& point, uint32_t salt) {
@@ -78,11 +78,11 @@ class CornerGrid {
  private:
   std::size_t offset(int x, int y, int z) const { return (std::size_t(x) * edge_ + y) * edge_ + z; }
   static float shape(int x, int y, int z) {
-    const Vec3f place = Vec3f(float(x), float(y), float(z)) / kFeature;
+    const Vec3f position = Vec3f(float(x), float(y), float(z)) / kFeature;
     float sum = 0;
     for (int octave = 0; octave < kOctaves; ++octave) {
       const auto scale = static_cast<float>(1 << octave);
-      sum += value_noise(place * scale, static_cast<uint32_t>(octave)) / scale;
+      sum += value_noise(position * scale, static_cast<uint32_t>(octave)) / scale;
     }
     return sum;
   }

@@ -10,11 +10,11 @@ namespace {
 
 /// @param axes a bit for each axis that changes its direction
 BrickMap mirror(const BrickMap& map, int axes) {
-  const auto flip = [axes](Vec3i place, int edge) {
+  const auto flip = [axes](Vec3i voxel, int edge) {
     for (int axis = 0; axis < 3; ++axis) {
-      if ((axes >> axis & 1) != 0) place[axis] = edge - 1 - place[axis];
+      if ((axes >> axis & 1) != 0) voxel[axis] = edge - 1 - voxel[axis];
     }
-    return place;
+    return voxel;
   };
   const Vec3i size = map.active_max() + Vec3i(1);  // of a cube that begins at 0
   BrickMapBuilder builder(Vec3i(0), map.active_max(), map.brick_count());
@@ -28,8 +28,8 @@ BrickMap mirror(const BrickMap& map, int axes) {
         map.voxels().data() + std::size_t(map.index()[entry]) * BrickMap::kBrickVoxels;
     const auto to = builder.add_brick(flip(brick, size.x / BrickMap::kBrickSize));
     for (int i = 0; i < BrickMap::kBrickVoxels; ++i) {
-      const Vec3i place = flip(Vec3i(i >> 6, i >> 3 & 7, i & 7), BrickMap::kBrickSize);
-      to[i] = from[place.x << 6 | place.y << 3 | place.z];
+      const Vec3i voxel = flip(Vec3i(i >> 6, i >> 3 & 7, i & 7), BrickMap::kBrickSize);
+      to[i] = from[voxel.x << 6 | voxel.y << 3 | voxel.z];
     }
   }
   return std::move(builder).finish();

@@ -124,8 +124,9 @@ class CellSteps {
       : counts_(grid.cells->counts) {
     const auto edge = static_cast<float>(grid.cells->cell_size);
     for (int axis = 0; axis < 3; ++axis) {
-      const float place = (origin[axis] + begin * direction[axis] - grid.first_corner[axis]) / edge;
-      cell_[axis] = std::clamp(static_cast<int>(place), 0, counts_[axis] - 1);
+      const float position =
+          (origin[axis] + begin * direction[axis] - grid.first_corner[axis]) / edge;
+      cell_[axis] = std::clamp(static_cast<int>(position), 0, counts_[axis] - 1);
       const bool forward = direction[axis] >= 0;
       step_[axis] = forward ? 1 : -1;
       end_[axis] = forward ? counts_[axis] : -1;

@@ -69,15 +69,15 @@ constexpr std::array kLibraryNames{"libOpenImageDenoise.so.2", "libOpenImageDeno
 
 /// The libraries at a place: a library, a folder of libraries or above one, or a virtual
 /// environment of Python's with the package pyoidn.
-std::vector<std::string> libraries_at(const std::string& place) {
+std::vector<std::string> libraries_at(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_directory(place, ignored)) return {place};
+  if (!std::filesystem::is_directory(path, ignored)) return {path};
   std::vector<std::string> found;
   for (const char* folder :
        {"", "/lib", "/lib64", "/lib/python3*/site-packages/pyoidn/oidn/lib", "/pyoidn/oidn/lib"}) {
     for (const char* name : kLibraryNames) {
       glob_t matches{};
-      if (glob((place + folder + "/" + name).c_str(), 0, nullptr, &matches) == 0) {
+      if (glob((path + folder + "/" + name).c_str(), 0, nullptr, &matches) == 0) {
         found.insert(found.end(), matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
       }
       globfree(&matches);

@@ -90,7 +90,7 @@ struct Difference {
     return *std::max_element(channels.begin(), channels.end(),
                              [](const auto& x, const auto& y) { return x.largest < y.largest; });
   }
-  std::string place(std::size_t pixel) const {
+  std::string pixel_text(std::size_t pixel) const {
     return fmt::format("({}, {})", pixel % width, pixel / width);
   }
 
@@ -306,14 +306,14 @@ void print_table(const Difference& difference) {
   print("all: MSE {:.6g}, relative MSE {:.6g}, largest difference {:.6g}", difference.mse(),
         difference.relative_mse(), worst.largest);
   if (worst.largest > 0) {
-    print(" in {} at pixel {}", worst.name, difference.place(worst.largest_pixel));
+    print(" in {} at pixel {}", worst.name, difference.pixel_text(worst.largest_pixel));
   }
   print("\n{} of {}x{} pixels compared\n", difference.compared(), difference.width,
         difference.height);
   if (difference.non_finite.empty()) return;
   print("not finite, left out: {}:", counted(difference.non_finite.size(), "pixel"));
   for (std::size_t i = 0; i < std::min(kNamedPixels, difference.non_finite.size()); ++i) {
-    print(" {}", difference.place(difference.non_finite[i]));
+    print(" {}", difference.pixel_text(difference.non_finite[i]));
   }
   print("{}\n", difference.non_finite.size() > kNamedPixels ? " ..." : "");
 }

@@ -61,16 +61,16 @@ std::optional<FrameRange> read_range(std::string_view text) {
 }
 
 /// The place of a frame's number in a name.
-struct Place {
+struct NumberField {
   std::size_t length = 0;  ///< 0: none begins here.
   int digits = 1;
 };
 
 /// The place at the front of a text, where there is one.
-Place place_at(std::string_view text) {
+NumberField number_field_at(std::string_view text) {
   if (text.starts_with('#')) {
     const std::size_t length = std::min(text.find_first_not_of('#'), text.size());
-    return length > 1 ? Place{length, static_cast<int>(length)} : Place{};
+    return length > 1 ? NumberField{length, static_cast<int>(length)} : NumberField{};
   }
   if (text.starts_with("%d")) return {2, 1};
   if (!text.starts_with("%0")) return {};
@@ -83,7 +83,7 @@ Place place_at(std::string_view text) {
 /// Whether the number of a frame seems to have a place in a name, whatever else is in it.
 bool looks_like_sequence(std::string_view name) {
   while (!name.empty()) {
-    if (place_at(name).length > 0) return true;
+    if (number_field_at(name).length > 0) return true;
     name.remove_prefix(name.starts_with("%%") ? 2 : 1);
   }
   return false;
@@ -91,7 +91,7 @@ bool looks_like_sequence(std::string_view name) {
 
 /// "frame 3: ", nothing where a name is the same in all frames.
 std::string frame_prefix(const FrameName& name, int frame) {
-  return name.has_place() ? fmt::format("frame {}: ", frame) : std::string();
+  return name.has_number() ? fmt::format("frame {}: ", frame) : std::string();
 }
 
 void check_readable(const std::string& file, const std::string& prefix) {
@@ -139,7 +139,7 @@ void check_written(const PictureFiles& picture) {
   for (const std::string& output : picture.outputs) check_output(output);
   check_statistics_file(picture.stats, picture.outputs, picture.volumes);
   if (!picture.checkpoint.empty()) {
-    read_option("--checkpoint", [&] { check_file_place(picture.checkpoint); });
+    read_option("--checkpoint", [&] { check_file_target(picture.checkpoint); });
   }
 }
 
@@ -213,12 +213,12 @@ std::string format_frames(std::span<const int> frames) {
 FrameName::FrameName(const std::string& name) {
   std::string_view rest = name;
   while (!rest.empty()) {
-    std::string& part = has_place_ ? after_ : before_;
-    if (const Place place = place_at(rest); place.length > 0) {
-      if (has_place_) fail("{}: has two places for the number of a frame; leave one", name);
-      has_place_ = true;
-      digits_ = place.digits;
-      rest.remove_prefix(place.length);
+    std::string& part = has_number_ ? after_ : before_;
+    if (const NumberField field = number_field_at(rest); field.length > 0) {
+      if (has_number_) fail("{}: has two places for the number of a frame; leave one", name);
+      has_number_ = true;
+      digits_ = field.digits;
+      rest.remove_prefix(field.length);
     } else if (rest.starts_with("%%")) {
       part += '%';
       rest.remove_prefix(2);
@@ -235,7 +235,7 @@ FrameName::FrameName(const std::string& name) {
 }
 
 std::string FrameName::in_frame(int frame) const {
-  if (!has_place_) return before_;
+  if (!has_number_) return before_;
   return fmt::format("{}{:0{}}{}", before_, frame, digits_, after_);
 }
 
@@ -251,16 +251,16 @@ std::vector<PictureFiles> plan_pictures(const std::string& frames, const Picture
   const FrameName stats(names.stats);
   const FrameName checkpoint(names.checkpoint);
   const FrameName resume(names.resume);
-  const auto has_place = [](const FrameName& name) { return name.has_place(); };
+  const auto has_number = [](const FrameName& name) { return name.has_number(); };
   if (numbers.size() > 1) {
-    if (std::none_of(volumes.begin(), volumes.end(), has_place)) {
+    if (std::none_of(volumes.begin(), volumes.end(), has_number)) {
       fail(
           "--frames {}: no volume has a place for the number of a frame, so that all pictures "
           "would be the same; write one, as in smoke.%04d.vdb",
           frames);
     }
     const auto refuse_overwriting = [&](const FrameName& name, const std::string& typed) {
-      if (name.has_place() || typed.empty()) return;
+      if (name.has_number() || typed.empty()) return;
       fail(
           "{}: frames would overwrite each other; give the name a place for their number, as in "
           "picture.%04d.exr",
@@ -278,7 +278,7 @@ std::vector<PictureFiles> plan_pictures(const std::string& frames, const Picture
     PictureFiles picture{.frame = number, .volumes = {}, .outputs = {}};
     for (const FrameName& volume : volumes) {
       picture.volumes.push_back(volume.in_frame(number));
-      if (volume.has_place() || pictures.empty()) {
+      if (volume.has_number() || pictures.empty()) {
         check_readable(picture.volumes.back(), frame_prefix(volume, number));
       }
     }

@@ -25,13 +25,13 @@ class FrameName {
   explicit FrameName(const std::string& name);
 
   /// Whether the number of a frame has a place in it.
-  bool has_place() const { return has_place_; }
+  bool has_number() const { return has_number_; }
   /// The file's name in a frame.
   std::string in_frame(int frame) const;
 
  private:
   std::string before_, after_;
-  bool has_place_ = false;
+  bool has_number_ = false;
   int digits_ = 1;  ///< At least.
 };
 

@@ -35,8 +35,8 @@ CameraKind read_camera_kind(const PictureOptions& options) {
 }
 
 /// Where --look-at puts the camera and its target, if it is given.
-void read_places(const PictureOptions& options, std::optional<Vec3d>& from,
-                 std::optional<Vec3d>& at) {
+void read_look_at(const PictureOptions& options, std::optional<Vec3d>& from,
+                  std::optional<Vec3d>& at) {
   if (options.look_at.empty()) return;
   const std::vector<double> numbers = parse_numbers(options.look_at, "--look-at");
   if (numbers.size() != 3 && numbers.size() != 6) {
@@ -214,7 +214,7 @@ CameraOptions read_camera(const PictureOptions& options, const FilmPlan& film) {
   camera.fov = options.fov;
   // From below one would see the ground's underside.
   if (!options.ground.empty()) camera.elevation = -kFramingElevation;
-  read_places(options, camera.from, camera.at);
+  read_look_at(options, camera.from, camera.at);
   return camera;
 }
 
@@ -238,7 +238,7 @@ BuildOptions read_build_options(const CLI::App& command, const PictureOptions& o
     CameraChange& camera = build.camera.emplace();
     camera.kind = read_camera_kind(options);
     if (command.count("--fov") > 0) camera.fov = options.fov;
-    read_places(options, camera.from, camera.at);
+    read_look_at(options, camera.from, camera.at);
     if (command.count("--up") > 0) camera.up = read_up(options);
   }
   const bool has_environment = command.count("--environment") > 0;
@@ -326,8 +326,8 @@ void check_scene_options(const CLI::App& command, const PictureOptions& options)
   if (given("--turbidity") && !has_lights) {
     fail("--turbidity is that of --environment sky or of the --sun; give one of them for a scene");
   }
-  const bool has_place = given("--ground") || given("--periodic") || changes_camera(command);
-  if (given("--up") && !has_lights && !has_place) {
+  const bool has_geometry = given("--ground") || given("--periodic") || changes_camera(command);
+  if (given("--up") && !has_lights && !has_geometry) {
     fail(
         "--up is for --environment, --sun, --ground, --periodic and the camera; give one of their "
         "options for a scene");

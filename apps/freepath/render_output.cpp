@@ -228,7 +228,7 @@ std::vector<std::pair<std::string, MetadataValue>> fixed_metadata(const RenderRe
 
 void check_output(const std::string& file) {
   if (is_film_file(file)) {
-    check_file_place(file);
+    check_file_target(file);
   } else {
     check_writable(file);
   }
@@ -238,7 +238,7 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
                            const std::vector<std::string>& volumes) {
   namespace fs = std::filesystem;
   if (file.empty()) return;
-  read_option("--stats", [&] { check_file_place(file); });
+  read_option("--stats", [&] { check_file_target(file); });
   std::vector<std::string> others = pictures;
   others.insert(others.end(), volumes.begin(), volumes.end());
   std::error_code error;

@@ -121,7 +121,7 @@ void check_not_empty(const RenderResult& result) {
 }
 
 /// Where a camera stands and looks, which may have been framed from another frame's volumes.
-std::string place_text(const Camera& camera) {
+std::string position_text(const Camera& camera) {
   const Matrix4d matrix = camera.ndc_from_world().value_or(camera.camera_from_world());
   const double* const values = matrix.getValue();
   return fmt::format("[{:.9g}]", fmt::join(values, values + 16, " "));
@@ -200,7 +200,7 @@ RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
     header.identity = picture_identity(
         job.run, settings, job.color == ColorMode::kSpectral ? "spectral" : "rgb", job.files);
     auto& facts = header.identity.facts;
-    facts.emplace_back("the camera's place", place_text(camera));
+    facts.emplace_back("the camera's place", position_text(camera));
     facts.insert(facts.end(), job.facts.begin(), job.facts.end());
   }
   const uint32_t had = before ? read_film_header(*before).samples.most : 0;

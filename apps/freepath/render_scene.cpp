@@ -69,7 +69,7 @@ void render_scene_file(const ScenePlan& plan) {
     return;
   }
   if (!plan.run.checkpoint.empty()) {
-    read_option("--checkpoint", [&] { check_file_place(plan.run.checkpoint); });
+    read_option("--checkpoint", [&] { check_file_target(plan.run.checkpoint); });
   }
   report.settings = settle(plan, built);
   report.threads = plan.settings.threads;

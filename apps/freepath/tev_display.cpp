@@ -124,7 +124,7 @@ DisplayAddress parse_display(const std::string& text) {
 }
 
 TevDisplay::TevDisplay(const DisplayAddress& address, std::string name)
-    : name_(std::move(name)), place_(fmt::format("{}, port {}", address.host, address.port)) {
+    : name_(std::move(name)), address_(fmt::format("{}, port {}", address.host, address.port)) {
   connect(address);
 }
 
@@ -170,7 +170,7 @@ bool TevDisplay::wait_until_writable() const {
 
 void TevDisplay::give_up(const std::string& reason) {
   warn("--display: {} ({}): {}; the picture is not shown{}",
-       created_ ? "lost the viewer" : "no viewer can be reached", place_, reason,
+       created_ ? "lost the viewer" : "no viewer can be reached", address_, reason,
        created_ ? " any more" : "");
   if (socket_ >= 0) close(socket_);
   socket_ = -1;

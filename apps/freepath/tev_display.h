@@ -50,7 +50,7 @@ class TevDisplay {
   std::size_t push();
   void give_up(const std::string& reason);
 
-  std::string name_, place_;
+  std::string name_, address_;
   int socket_ = -1;
   std::vector<char> waiting_;  ///< Of which the viewer has the first `sent_` bytes.
   std::size_t sent_ = 0;

@@ -60,9 +60,9 @@ HWY_INLINE void assign(VecI& target, MaskF mask, VecI value) {
 
 /// Asks for base[places[lane]] of every lane.
 template <class T>
-HWY_INLINE void prefetch_lanes(const T* base, const int32_t (&places)[kLanes]) {
+HWY_INLINE void prefetch_lanes(const T* base, const int32_t (&indices)[kLanes]) {
   HWY_FENCE;  // the places come from memory: taking them out of a vector costs more
-  for (size_t lane = 0; lane < kLanes; ++lane) hwy::Prefetch(base + places[lane]);
+  for (size_t lane = 0; lane < kLanes; ++lane) hwy::Prefetch(base + indices[lane]);
 }
 
 /// Asks for `count` values of an array, a cache line after the other.

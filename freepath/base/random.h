@@ -75,7 +75,7 @@ constexpr float uniform_from_words(uint32_t bits, uint32_t second) {
 inline constexpr float kArtanh[3] = {0.66666685F, 0.39988778F, 0.29580053F};
 inline constexpr float kLogOf2 = 0.69314718F;
 inline constexpr uint32_t kOneBits = 0x3F800000U;
-inline constexpr uint32_t kRootHalfBits = 0x3F3504F3U;  ///< Of sqrt(1/2).
+inline constexpr uint32_t kRootHalfBits = 0x3F3504F3U;  ///< Bits of sqrt(1/2).
 
 /// Exponential with mean 1, to some 2^-23 of itself, from 2^-64 to 44. The first bit says on which
 /// side of log 2 it lies; below, it is -log(1 - v) of a uniform v with all its digits near 0, and

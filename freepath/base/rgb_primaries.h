@@ -9,7 +9,7 @@
 
 namespace freepath {
 
-/// For vectors as rows, as all matrices of the project: `xyz = rgb * rgb_to_xyz`.
+/// Matrix for vectors as rows, as all of the project: `xyz = rgb * rgb_to_xyz`.
 using Matrix3d = Imath::M33d;
 
 /// A colour without its luminance: x = X / (X + Y + Z), and y likewise.

@@ -19,7 +19,7 @@ struct AffineTransform {
 
   Vec3d point(const Vec3d& p) const { return x * p.x + y * p.y + z * p.z + translation; }
   Vec3d vector(const Vec3d& v) const { return x * v.x + y * v.y + z * v.z; }
-  /// Of the map from A to B: takes a normal of B to A. Not normalised.
+  /// Takes a normal of B to A, where the map is from A to B. Not normalised.
   Vec3d normal_back(const Vec3d& n) const { return {x.dot(n), y.dot(n), z.dot(n)}; }
   /// Negative where the map swaps handedness.
   double determinant() const { return x.dot(y.cross(z)); }

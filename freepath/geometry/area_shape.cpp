@@ -136,18 +136,18 @@ class AreaShape::PatchKind : public Kind {
   double area(uint32_t index) const override {
     // Gauss's rule of three points in each of 4 x 4 cells.
     constexpr int kCells = 4;
-    static constexpr std::array<double, 3> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417};
+    static constexpr std::array<double, 3> kNodes = {0.1127016653792583, 0.5, 0.8872983346207417};
     constexpr std::array<double, 3> kWeights = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     const BilinearPatch patch = mesh_.patch(index);
-    const auto place = [](int i) {
+    const auto node = [](int i) {
       const int cell = i / 3;
-      return (cell + kPlaces[i % 3]) / kCells;
+      return (cell + kNodes[i % 3]) / kCells;
     };
     double sum = 0;
     for (int i = 0; i < 3 * kCells; ++i) {
       for (int j = 0; j < 3 * kCells; ++j) {
         const double weight = kWeights[i % 3] * kWeights[j % 3];
-        sum += weight * patch.normal(place(i), place(j)).length();
+        sum += weight * patch.normal(node(i), node(j)).length();
       }
     }
     return sum / (kCells * kCells);

@@ -12,25 +12,25 @@ void BoundaryCrossings::clear() {
 void BoundaryCrossings::add(const BoundaryCrossing& crossing) {
   BoundaryCrossing* const begin = crossings_.data();
   BoundaryCrossing* const end = begin + count_;
-  BoundaryCrossing* const place =
-      std::upper_bound(begin, end, crossing,
-                       [](const auto& a, const auto& b) { return a.place.is_before(b.place); });
+  BoundaryCrossing* const slot = std::upper_bound(
+      begin, end, crossing,
+      [](const auto& a, const auto& b) { return a.position.is_before(b.position); });
   // Two triangles that share an edge may both claim a ray through it.
-  for (auto* at = place; at != begin && (at - 1)->place.is_tied(crossing.place); --at) {
+  for (auto* at = slot; at != begin && (at - 1)->position.is_tied(crossing.position); --at) {
     if ((at - 1)->is_same(crossing)) return;
   }
-  for (auto* at = place; at != end && at->place.is_tied(crossing.place); ++at) {
+  for (auto* at = slot; at != end && at->position.is_tied(crossing.position); ++at) {
     if (at->is_same(crossing)) return;
   }
   if (count_ < kCapacity) {
-    std::move_backward(place, end, end + 1);
+    std::move_backward(slot, end, end + 1);
     ++count_;
   } else {
     overflowed_ = true;
-    if (place == end) return;
-    std::move_backward(place, end - 1, end);
+    if (slot == end) return;
+    std::move_backward(slot, end - 1, end);
   }
-  *place = crossing;
+  *slot = crossing;
 }
 
 }  // namespace freepath

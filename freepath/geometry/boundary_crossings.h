@@ -5,24 +5,24 @@
 #include <cstdint>
 #include <span>
 
-#include "freepath/geometry/ray_place.h"
+#include "freepath/geometry/ray_position.h"
 
 namespace freepath {
 
 /// Where a ray goes through a shape that is a mere boundary.
 struct BoundaryCrossing {
-  RayPlace place;
+  RayPosition position;
   uint32_t shape = 0;
   bool enters = false;  ///< direction · normal < 0
 
   bool is_same(const BoundaryCrossing& other) const {
     return shape == other.shape && enters == other.enters &&
-           place.key.instance == other.place.key.instance && place.is_tied(other.place);
+           position.key.instance == other.position.key.instance && position.is_tied(other.position);
   }
 };
 
-/// The nearest crossings of a ray in the order of their places, each once even where the ray goes
-/// through the common edge of two triangles.
+/// The nearest crossings of a ray in the order of their positions, each once even where the ray
+/// goes through the common edge of two triangles.
 class BoundaryCrossings {
  public:
   static constexpr uint32_t kCapacity = 32;

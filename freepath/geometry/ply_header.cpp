@@ -13,13 +13,13 @@ namespace {
 /// The words of a line.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
-  std::size_t place = 0;
+  std::size_t offset = 0;
   for (;;) {
-    place = line.find_first_not_of(" \t\r", place);
-    if (place == std::string_view::npos) return words;
-    const std::size_t end = std::min(line.find_first_of(" \t\r", place), line.size());
-    words.push_back(line.substr(place, end - place));
-    place = end;
+    offset = line.find_first_not_of(" \t\r", offset);
+    if (offset == std::string_view::npos) return words;
+    const std::size_t end = std::min(line.find_first_of(" \t\r", offset), line.size());
+    words.push_back(line.substr(offset, end - offset));
+    offset = end;
   }
 }
 
@@ -70,7 +70,7 @@ class HeaderParser {
       }
     }
     if (!has_format) bad("the header ends without a format");
-    header_.size = place_;
+    header_.size = offset_;
     return std::move(header_);
   }
 
@@ -80,12 +80,12 @@ class HeaderParser {
   }
 
   std::string_view next_line() {
-    const std::size_t end = content_.find('\n', place_);
+    const std::size_t end = content_.find('\n', offset_);
     ++header_.lines;
     if (end == std::string_view::npos) bad("the header does not end: there is no 'end_header'");
-    std::string_view line = content_.substr(place_, end - place_);
+    std::string_view line = content_.substr(offset_, end - offset_);
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    place_ = end + 1;
+    offset_ = end + 1;
     return line;
   }
 
@@ -136,7 +136,7 @@ class HeaderParser {
 
   std::string_view content_;
   const std::string& name_;
-  std::size_t place_ = 0;
+  std::size_t offset_ = 0;
   PlyHeader header_;
 };
 

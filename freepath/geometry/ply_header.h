@@ -16,7 +16,7 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::kFloat32;
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;  ///< Of a list.
+  PlyType count_type = PlyType::kUint8;  ///< Type of the count that a list begins with.
 };
 
 struct PlyElement {
@@ -28,7 +28,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t size = 0;  ///< Of the header [bytes]; the data begin there.
+  std::size_t size = 0;  ///< Length of the header [bytes]; the data begin there.
   int lines = 0;
 };
 

@@ -26,7 +26,7 @@ struct QuadricPoint {
 
 enum class QuadricKind { kSphere, kDisk, kCylinder };
 
-/// One of the three, with its clipping.
+/// A sphere, disk or cylinder with its clipping.
 class Quadric {
  public:
   explicit Quadric(const Sphere& sphere);
@@ -42,7 +42,7 @@ class Quadric {
     if (kind_ == QuadricKind::kDisk) return {0, 0, 1};
     return {point.x, point.y, kind_ == QuadricKind::kSphere ? point.z : 0};
   }
-  /// Of any kind that is not cut: a whole sphere.
+  /// Whether it is a sphere that is not cut.
   bool is_whole_sphere() const {
     return kind_ == QuadricKind::kSphere && phi_max_ >= kFullTurn && z_min_ <= -radius_ &&
            z_max_ >= radius_;

@@ -43,7 +43,8 @@ struct BilinearMesh {
   std::vector<int> indices;    ///< Four for each patch.
 };
 
-/// Around the origin. u grows with the azimuth from +x to +y, v from z_min to z_max with the angle.
+/// A sphere around the origin, or a part of it. u grows with the azimuth from +x to +y, v from
+/// z_min to z_max with the angle.
 struct Sphere {
   double radius = 1;
   double z_min = -std::numeric_limits<double>::infinity();  ///< Clamped to [-radius, radius].
@@ -51,7 +52,7 @@ struct Sphere {
   double phi_max = 360;
 };
 
-/// In the plane z = height. v is 0 at the rim, 1 at inner_radius.
+/// A disk or ring in the plane z = height. v is 0 at the rim, 1 at inner_radius.
 struct Disk {
   double height = 0;
   double radius = 1;
@@ -59,7 +60,7 @@ struct Disk {
   double phi_max = 360;
 };
 
-/// Around the z axis, open at both ends. v grows linearly with z.
+/// A cylinder around the z axis, open at both ends. v grows linearly with z.
 struct Cylinder {
   double radius = 1;
   double z_min = -1;
@@ -72,11 +73,11 @@ using ShapeGeometry = std::variant<TriangleMesh, BilinearMesh, Sphere, Disk, Cyl
 /// A shape in its place.
 struct SurfaceShape {
   ShapeGeometry geometry;
-  Matrix4d object_to_world;  ///< For a shape of a group: to the space of the group.
+  Matrix4d object_to_world;  ///< Leads to the space of the group, if the shape is in one.
   bool reverse_orientation = false;
-  /// Of pbrt's material "interface": nothing happens there but a change of medium.
+  /// Whether nothing happens there but a change of medium: pbrt's material "interface".
   bool is_boundary = false;
-  uint32_t shape = 0;  ///< Of the scene's shapes; several may bear the same.
+  uint32_t shape = 0;  ///< Number among the scene's shapes; several may bear the same.
   /// Number of the first triangle or patch, where a shape is made of more than one mesh.
   uint32_t first_primitive = 0;
   /// Whether its texture coordinates are read. Otherwise quadrics, which take two inverse
@@ -98,7 +99,7 @@ struct SurfaceScene {
   std::vector<SurfaceInstance> instances;
 };
 
-/// How many triangles or patches; 1 for a quadric.
+/// The number of triangles or patches; 1 for a quadric.
 uint32_t primitive_count(const ShapeGeometry& geometry);
 
 /// @throws Error that names what is wrong and where: counts that do not fit, indices out of range,

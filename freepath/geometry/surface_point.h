@@ -14,7 +14,7 @@ struct SurfacePoint {
   Vec3f shading_normal;    ///< Interpolated where the mesh has normals, unit, in its hemisphere.
   Vec3f dpdu;              ///< Direction of growing u, not 0; not normalised.
   float u = 0, v = 0;      ///< Texture coordinates.
-  uint32_t shape = 0;      ///< Of the scene's shapes.
+  uint32_t shape = 0;      ///< Number among the scene's shapes.
   uint32_t primitive = 0;  ///< Triangle or patch of the shape.
 };
 

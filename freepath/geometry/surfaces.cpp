@@ -49,7 +49,7 @@ class Surfaces::Data {
   SurfaceQuery query(QueryKind kind, const Vec3f& origin, const Vec3f& direction, float t_min,
                      double t_max) const;
   static RTCRay ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max);
-  SurfaceHit describe(const RayPlace& place, float u, float v, const LocalRay& ray) const;
+  SurfaceHit describe(const RayPosition& position, float u, float v, const LocalRay& ray) const;
   const TracedPart& part_of(const SurfaceKey& key) const {
     return key.instance == kNoInstance ? *world : *groups[rule.instances[key.instance].group];
   }
@@ -65,7 +65,7 @@ class Surfaces::Data {
   // Parts stay where they are: the scenes refer to their insides. They outlive the scenes.
   std::unique_ptr<const TracedPart> world;
   std::vector<std::unique_ptr<const TracedPart>> groups;
-  PlaceRule rule;
+  RayPositionRule rule;
   std::vector<SceneHandle> group_scenes;
   SceneHandle scene;
 
@@ -181,14 +181,14 @@ RTCRay Surfaces::Data::ray(const Vec3f& ray_origin, const Vec3f& direction, floa
   return ray;
 }
 
-SurfaceHit Surfaces::Data::describe(const RayPlace& place, float u, float v,
+SurfaceHit Surfaces::Data::describe(const RayPosition& position, float u, float v,
                                     const LocalRay& ray) const {
   SurfaceHit hit;
-  hit.place = place;
-  hit.instance = place.key.instance;
-  const TracedPart& part = part_of(place.key);
+  hit.position = position;
+  hit.instance = position.key.instance;
+  const TracedPart& part = part_of(position.key);
   TracedPart::Found at =
-      part.find(place.key, u, v, place.t, rule.local_ray(ray, place.key.instance));
+      part.find(position.key, u, v, position.t, rule.local_ray(ray, position.key.instance));
   if (hit.instance != kNoInstance) {
     const TracedInstance& instance = rule.instances[hit.instance];
     at.point.position = instance.part_to_world.point(at.point.position);
@@ -209,8 +209,8 @@ SurfaceHit Surfaces::Data::describe(const RayPlace& place, float u, float v,
   hit.point.u = p.uv.x;
   hit.point.v = p.uv.y;
   hit.point.shape = at.shape->shape;
-  const bool is_quadric = part.is_quadric(place.key.geometry);
-  hit.point.primitive = at.shape->first_primitive + (is_quadric ? 0 : place.key.primitive);
+  const bool is_quadric = part.is_quadric(position.key.geometry);
+  hit.point.primitive = at.shape->first_primitive + (is_quadric ? 0 : position.key.primitive);
   return hit;
 }
 
@@ -224,7 +224,7 @@ void Surfaces::Data::aim(SurfaceQuery& query, const ShadowEnd& end) const {
   query.target->root = met->root;
   query.t_max = met->at.t;
   query.t_block =
-      met->at.t - rule.place(query.ray, met->at, *query.target, end.target->shape).reach;
+      met->at.t - rule.position(query.ray, met->at, *query.target, end.target->shape).reach;
 }
 
 Surfaces::Surfaces(const SurfaceScene& scene, const Vec3d& origin)
@@ -268,24 +268,26 @@ void Surfaces::find_ties(const Vec3f& origin, const Vec3f& direction, const Surf
   ties.clear();
   SurfaceQuery query =
       data_->query(QueryKind::kTies, origin, direction, 0, std::numeric_limits<double>::infinity());
-  query.around = &hit.place;
+  query.around = &hit.position;
   query.ties = &ties;
-  const auto met = data_->meet(hit.place.key, query.ray, hit.place.t);
+  const auto met = data_->meet(hit.position.key, query.ray, hit.position.t);
   const double range =
-      met ? data_->rule.search_range(query.ray, met->at, hit.place) : hit.place.reach;
-  RTCRay ray = Data::ray(origin, direction, static_cast<float>(std::max(hit.place.t - range, 0.0)),
-                         static_cast<float>(hit.place.t + range));
+      met ? data_->rule.search_range(query.ray, met->at, hit.position) : hit.position.reach;
+  RTCRay ray =
+      Data::ray(origin, direction, static_cast<float>(std::max(hit.position.t - range, 0.0)),
+                static_cast<float>(hit.position.t + range));
   rtcOccluded1(data_->scene.get(), &query.context, &ray);
-  std::sort(ties.begin(), ties.end(),
-            [](const TiedSurface& a, const TiedSurface& b) { return a.place.is_before(b.place); });
+  std::sort(ties.begin(), ties.end(), [](const TiedSurface& a, const TiedSurface& b) {
+    return a.position.is_before(b.position);
+  });
   std::size_t kept = 0;
   for (const TiedSurface& tied : ties) {
     const auto is_same = [&](uint32_t shape, uint32_t instance, bool enters) {
-      return tied.shape == shape && tied.place.key.instance == instance && tied.enters == enters;
+      return tied.shape == shape && tied.position.key.instance == instance && tied.enters == enters;
     };
     bool is_known = is_same(hit.point.shape, hit.instance, !hit.from_inside);
     for (std::size_t i = 0; i < kept && !is_known; ++i) {
-      is_known = is_same(ties[i].shape, ties[i].place.key.instance, ties[i].enters);
+      is_known = is_same(ties[i].shape, ties[i].position.key.instance, ties[i].enters);
     }
     if (!is_known) ties[kept++] = tied;
   }
@@ -294,18 +296,20 @@ void Surfaces::find_ties(const Vec3f& origin, const Vec3f& direction, const Surf
 
 SurfaceHit Surfaces::describe(const Vec3f& origin, const Vec3f& direction,
                               const TiedSurface& tied) const {
-  SurfaceHit hit = data_->describe(tied.place, tied.u, tied.v, {Vec3d(origin), Vec3d(direction)});
+  SurfaceHit hit =
+      data_->describe(tied.position, tied.u, tied.v, {Vec3d(origin), Vec3d(direction)});
   hit.is_tied = true;
   return hit;
 }
 
-bool Surfaces::is_beyond(const RayPlace& place, const Vec3f& origin, const Vec3f& direction) const {
-  const auto met = data_->meet(place.key, {Vec3d(origin), Vec3d(direction)}, 0);
+bool Surfaces::is_beyond(const RayPosition& position, const Vec3f& origin,
+                         const Vec3f& direction) const {
+  const auto met = data_->meet(position.key, {Vec3d(origin), Vec3d(direction)}, 0);
   return !met || !(met->at.t > 0);
 }
 
 bool Surfaces::occluded(const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
-                        BoundaryCrossings& crossings, const RayPlace* after) const {
+                        BoundaryCrossings& crossings, const RayPosition* after) const {
   crossings.clear();
   SurfaceQuery query =
       data_->query(QueryKind::kOcclusion, origin, direction, 0, double{end.distance});
@@ -319,7 +323,7 @@ bool Surfaces::occluded(const Vec3f& origin, const Vec3f& direction, const Shado
   return ray.tfar < 0;
 }
 
-bool Surfaces::is_end(const Vec3f& origin, const Vec3f& direction, const RayPlace& place,
+bool Surfaces::is_end(const Vec3f& origin, const Vec3f& direction, const RayPosition& position,
                       const ShadowEnd& end) const {
   if (!end.target) return false;
   std::optional<SurfaceKey> target =
@@ -328,7 +332,7 @@ bool Surfaces::is_end(const Vec3f& origin, const Vec3f& direction, const RayPlac
   const auto met = data_->meet(*target, {Vec3d(origin), Vec3d(direction)}, end.distance);
   if (!met) return false;
   target->root = met->root;
-  return place.key == *target;
+  return position.key == *target;
 }
 
 std::vector<BoundaryCrossing> Surfaces::all_crossings(const Vec3f& origin,
@@ -340,12 +344,13 @@ std::vector<BoundaryCrossing> Surfaces::all_crossings(const Vec3f& origin,
   RTCRay ray = Data::ray(origin, direction, 0, std::numeric_limits<float>::infinity());
   rtcOccluded1(data_->scene.get(), &query.context, &ray);
   std::sort(all.begin(), all.end(), [](const BoundaryCrossing& a, const BoundaryCrossing& b) {
-    return a.place.is_before(b.place);
+    return a.position.is_before(b.position);
   });
   std::vector<BoundaryCrossing> each;
   for (const BoundaryCrossing& crossing : all) {
     bool is_known = false;
-    for (auto at = each.rbegin(); at != each.rend() && at->place.is_tied(crossing.place); ++at) {
+    for (auto at = each.rbegin(); at != each.rend() && at->position.is_tied(crossing.position);
+         ++at) {
       is_known = is_known || at->is_same(crossing);
     }
     if (!is_known) each.push_back(crossing);

@@ -9,7 +9,7 @@
 
 #include "freepath/base/vector.h"
 #include "freepath/geometry/boundary_crossings.h"
-#include "freepath/geometry/ray_place.h"
+#include "freepath/geometry/ray_position.h"
 #include "freepath/geometry/shape_geometry.h"
 #include "freepath/geometry/surface_point.h"
 
@@ -20,24 +20,24 @@ struct SurfaceHit {
   float t = 0;  ///< position = origin + t direction
   SurfacePoint point;
   bool from_inside = false;         ///< The ray leaves the shape: direction · normal > 0.
-  uint32_t instance = kNoInstance;  ///< Of SurfaceScene::instances.
-  RayPlace place;
-  bool is_tied = false;  ///< Another surface is at the same place; see Surfaces::find_ties.
+  uint32_t instance = kNoInstance;  ///< Index in SurfaceScene::instances.
+  RayPosition position;
+  bool is_tied = false;  ///< Another surface is at the same position; see Surfaces::find_ties.
 };
 
-/// A surface at the place of another.
+/// A surface at the position of another.
 struct TiedSurface {
-  RayPlace place;
+  RayPosition position;
   uint32_t shape = 0;
   bool enters = false;  ///< direction · normal < 0
-  float u = 0, v = 0;   ///< Of the primitive; for Surfaces::describe.
+  float u = 0, v = 0;   ///< Parameters on the primitive; for Surfaces::describe.
 };
 
 /// Where a shadow ray ends.
 struct ShadowEnd {
   float distance = 0;  ///< [t]
   /// The point on a shape that it ends at, which is not in its own shadow, nor in that of a surface
-  /// at the same place; SurfacePoint::shape and primitive.
+  /// at the same position; SurfacePoint::shape and primitive.
   struct Target {
     uint32_t shape = 0, primitive = 0;
   };
@@ -46,7 +46,7 @@ struct ShadowEnd {
 
 /// What surfaces cost, counted, so that tests see how it grows.
 struct SurfaceCosts {
-  uint64_t positions = 0;  ///< Those of meshes that were looked at for bounds.
+  uint64_t positions = 0;  ///< Positions of meshes that were looked at for bounds.
   uint64_t bytes = 0;      ///< Held by Embree.
 };
 
@@ -56,7 +56,7 @@ struct SurfaceCosts {
 ///
 /// Triangles are found in floats, quadrics and patches in doubles; where on the ray they are, and
 /// which is the nearest, is decided in doubles, for the surfaces as they were rounded to floats.
-/// Surfaces at one place are all met: find_ties() tells which are there.
+/// Surfaces at one position are all met: find_ties() tells which are there.
 class Surfaces {
  public:
   /// @param origin that positions are relative to [world]: near what is seen
@@ -67,7 +67,7 @@ class Surfaces {
   Surfaces& operator=(Surfaces&&) noexcept;
 
   const Vec3d& origin() const;
-  /// Around all that is there [world, relative to the origin]; empty if nothing is.
+  /// The box around all surfaces [world, relative to the origin]; empty if nothing is.
   Box3f bounds() const;
 
   SurfaceCosts costs() const;
@@ -76,35 +76,35 @@ class Surfaces {
   /// @param looked_at counts the surfaces that were tried; may be null
   std::optional<SurfaceHit> intersect(const Vec3f& origin, const Vec3f& direction, float t_min,
                                       float t_max, uint64_t* looked_at = nullptr) const;
-  /// All other surfaces at the place where a ray meets one, in the order of their places, each once
-  /// even on the common edge of two triangles. `ties` is overwritten.
+  /// All other surfaces at the position where a ray meets one, in the order of their positions,
+  /// each once even on the common edge of two triangles. `ties` is overwritten.
   /// @param hit of this ray
   void find_ties(const Vec3f& origin, const Vec3f& direction, const SurfaceHit& hit,
                  std::vector<TiedSurface>& ties) const;
   /// A tied surface as if the ray had met it alone.
   SurfaceHit describe(const Vec3f& origin, const Vec3f& direction, const TiedSurface& tied) const;
-  /// Whether a ray from a point near the place, in the direction of the ray that met it there,
+  /// Whether a ray from a point near the position, in the direction of the ray that met it there,
   /// starts beyond the surface, so that it won't meet it (again).
-  bool is_beyond(const RayPlace& place, const Vec3f& origin, const Vec3f& direction) const;
+  bool is_beyond(const RayPosition& position, const Vec3f& origin, const Vec3f& direction) const;
 
   /// Whether any shape but boundaries is met at t in (0, end). If none is, `crossings` are those
   /// of the boundaries; otherwise they are of no use.
   /// @param after crossings up to this one are left out: the last of those that overflowed
   bool occluded(const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
-                BoundaryCrossings& crossings, const RayPlace* after = nullptr) const;
+                BoundaryCrossings& crossings, const RayPosition* after = nullptr) const;
 
-  /// Whether a place on a shadow ray is the point that it ends at, and not another one of the same
-  /// primitive, which may lie in its own shadow.
+  /// Whether a position on a shadow ray is the point that it ends at, and not another one of the
+  /// same primitive, which may lie in its own shadow.
   /// @param end its distance from this origin
-  bool is_end(const Vec3f& origin, const Vec3f& direction, const RayPlace& place,
+  bool is_end(const Vec3f& origin, const Vec3f& direction, const RayPosition& position,
               const ShadowEnd& end) const;
 
-  /// All surfaces on a ray in the order of their places, whatever they are made of, each once even
-  /// on the common edge of two triangles. Allocates: for the time of loading.
+  /// All surfaces on a ray in the order of their positions, whatever they are made of, each once
+  /// even on the common edge of two triangles. Allocates: for the time of loading.
   std::vector<BoundaryCrossing> all_crossings(const Vec3f& origin, const Vec3f& direction) const;
 
-  /// Where a ray starts that leaves a point of these surfaces, so that it does not meet the same
-  /// place again: off the surface along its normal, to the side of the direction, by a few
+  /// The origin of a ray that leaves a point of these surfaces, so that it does not meet the same
+  /// position again: off the surface along its normal, to the side of the direction, by a few
   /// roundings of the position.
   Vec3f offset_ray_origin(const SurfacePoint& point, const Vec3f& direction) const;
 

@@ -21,12 +21,12 @@ const RTCHit& hit_of(const RTCFilterFunctionNArguments* args) {
 
 /// Adds a surface to what a query of several collects.
 template <class Enters>
-void collect(SurfaceQuery& query, const TracedShape& shape, const RayPlace& place, float u, float v,
-             const Enters& enters) {
+void collect(SurfaceQuery& query, const TracedShape& shape, const RayPosition& position, float u,
+             float v, const Enters& enters) {
   if (query.kind == QueryKind::kAll) {
-    query.all->push_back({place, shape.shape, enters()});
-  } else if (place.key != query.around->key && place.is_tied(*query.around)) {
-    query.ties->push_back({place, shape.shape, enters(), u, v});
+    query.all->push_back({position, shape.shape, enters()});
+  } else if (position.key != query.around->key && position.is_tied(*query.around)) {
+    query.ties->push_back({position, shape.shape, enters(), u, v});
   }
 }
 
@@ -35,9 +35,9 @@ template <class Enters>
 bool blocks(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at,
             const SurfaceKey& key, const Enters& enters) {
   if (!shape.is_boundary) return at.t < query.t_block && key != query.target;
-  const RayPlace place = query.rule->place(query.ray, at, key, shape.shape);
-  if (query.after == nullptr || query.after->is_before(place)) {
-    query.crossings->add({place, shape.shape, enters()});
+  const RayPosition position = query.rule->position(query.ray, at, key, shape.shape);
+  if (query.after == nullptr || query.after->is_before(position)) {
+    query.crossings->add({position, shape.shape, enters()});
   }
   return false;
 }
@@ -45,17 +45,17 @@ bool blocks(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at,
 /// Whether a surface is the nearest so far.
 bool is_nearest(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at,
                 const SurfaceKey& key, float& t_far) {
-  const RayPlace place = query.rule->place(query.ray, at, key, shape.shape);
-  const bool is_tied = place.is_tied(query.nearest);
-  if (!place.is_before(query.nearest)) {
-    if (place.key != query.nearest.key) query.is_tied = query.is_tied || is_tied;
+  const RayPosition position = query.rule->position(query.ray, at, key, shape.shape);
+  const bool is_tied = position.is_tied(query.nearest);
+  if (!position.is_before(query.nearest)) {
+    if (position.key != query.nearest.key) query.is_tied = query.is_tied || is_tied;
     return false;
   }
   query.is_tied = is_tied;
-  query.nearest = place;
-  // What is at the same place has to be offered, too.
+  query.nearest = position;
+  // What is at the same position has to be offered, too.
   t_far = static_cast<float>(
-      std::min(place.t + query.rule->search_range(query.ray, at, place), query.t_max));
+      std::min(position.t + query.rule->search_range(query.ray, at, position), query.t_max));
   return true;
 }
 
@@ -81,7 +81,7 @@ bool meet(SurfaceQuery& query, const TracedShape& shape, const LinePoint& at, co
       return false;
     case QueryKind::kTies:
     case QueryKind::kAll:
-      collect(query, shape, query.rule->place(query.ray, at, key, shape.shape), u, v, enters);
+      collect(query, shape, query.rule->position(query.ray, at, key, shape.shape), u, v, enters);
       return false;
   }
   return false;
@@ -269,8 +269,8 @@ RTCBounds rounded_outward(const Box3d& box) {
   return {low.x, low.y, low.z, 0, high.x, high.y, high.z, 0};
 }
 
-RayPlace PlaceRule::place(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
-                          uint32_t shape) const {
+RayPosition RayPositionRule::position(const LocalRay& world, const LinePoint& at,
+                                      const SurfaceKey& key, uint32_t shape) const {
   // A new ray begins at most six roundings of the position off the surface: see
   // Surfaces::offset_ray_origin().
   constexpr double kRoundings = 8 * 0x1p-24;
@@ -286,17 +286,17 @@ RayPlace PlaceRule::place(const LocalRay& world, const LinePoint& at, const Surf
   return {at.t, reach / std::abs(at.across), key};
 }
 
-double PlaceRule::search_range(const LocalRay& world, const LinePoint& at,
-                               const RayPlace& place) const {
+double RayPositionRule::search_range(const LocalRay& world, const LinePoint& at,
+                                     const RayPosition& position) const {
   constexpr double kSinglePrecision = 0x1p-20;
-  const Vec3d normal = world_normal(at.normal, place.key.instance);
+  const Vec3d normal = world_normal(at.normal, position.key.instance);
   double length = 0;
   double largest = extent;
   for (int axis = 0; axis < 3; ++axis) {
     length += std::abs(normal[axis]);
     largest = std::max(largest, std::abs(world.origin[axis]));
   }
-  return place.reach + kSinglePrecision * largest * length / std::abs(at.across);
+  return position.reach + kSinglePrecision * largest * length / std::abs(at.across);
 }
 
 TracedPart::TracedPart(std::span<const SurfaceShape> shapes, const Vec3d& part_origin)

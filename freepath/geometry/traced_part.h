@@ -39,17 +39,18 @@ struct TracedInstance {
 
 enum class QueryKind { kNearest, kOcclusion, kCount, kTies, kAll };
 
-/// What the places of all rays of a scene depend on.
-struct PlaceRule {
+/// What the positions of all rays of a scene depend on.
+struct RayPositionRule {
   std::vector<TracedInstance> instances;
-  std::vector<float> smallest_offset;  ///< By SurfaceShape::shape.
+  std::vector<float> smallest_offset;  ///< Indexed by SurfaceShape::shape.
   double extent = 0;                   ///< Largest coordinate of anything [world, from the origin].
 
   /// @param at,key of a point where the ray meets a surface of the shape
-  RayPlace place(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
-                 uint32_t shape) const;
-  /// How far from its place single precision may find a surface that faces the same way [t].
-  double search_range(const LocalRay& world, const LinePoint& at, const RayPlace& place) const;
+  RayPosition position(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
+                       uint32_t shape) const;
+  /// How far from its position single precision may find a surface that faces the same way [t].
+  double search_range(const LocalRay& world, const LinePoint& at,
+                      const RayPosition& position) const;
   /// The ray in the space of what a key is of.
   LocalRay local_ray(const LocalRay& world, uint32_t instance) const {
     if (instance == kNoInstance) return world;
@@ -71,23 +72,24 @@ struct SurfaceQuery {
 
   RTCIntersectContext context;
   QueryKind kind;
-  LocalRay ray;  ///< In the world, relative to the origin of rays.
+  LocalRay ray;  ///< The ray in the world, relative to the origin of rays.
   double t_min = 0, t_max = 0;
-  const PlaceRule* rule = nullptr;
+  const RayPositionRule* rule = nullptr;
   unsigned first_instance = 0;  ///< Geometry number of the first instance.
 
-  RayPlace nearest = {std::numeric_limits<double>::infinity(), 0, {}};  ///< Of kNearest.
+  /// What kNearest has found.
+  RayPosition nearest = {std::numeric_limits<double>::infinity(), 0, {}};
   bool is_tied = false;
 
-  double t_block = 0;                     ///< Of kOcclusion: only what is nearer blocks,
+  double t_block = 0;                     ///< For kOcclusion: only what is nearer blocks,
   std::optional<SurfaceKey> target = {};  ///< and never this.
-  const RayPlace* after = nullptr;        ///< Crossings up to there are left out.
+  const RayPosition* after = nullptr;     ///< Crossings up to there are left out.
   BoundaryCrossings* crossings = nullptr;
 
-  const RayPlace* around = nullptr;  ///< Of kTies.
+  const RayPosition* around = nullptr;  ///< What kTies looks for the ties of.
   std::vector<TiedSurface>* ties = nullptr;
-  std::vector<BoundaryCrossing>* all = nullptr;  ///< Of kAll.
-  std::span<const uint32_t> counted = {};        ///< Of kCount: the shapes.
+  std::vector<BoundaryCrossing>* all = nullptr;  ///< What kAll collects.
+  std::span<const uint32_t> counted = {};        ///< The shapes that kCount counts.
   uint32_t count = 0;
   uint64_t looked_at = 0;  ///< Surfaces, whatever became of them.
 
@@ -142,7 +144,7 @@ class TracedPart {
   uint64_t looked_at = 0;  ///< Positions of meshes, for their boxes.
 
  private:
-  /// Those of a shape from a number on.
+  /// The primitives of a shape from a number on.
   struct Primitives {
     uint32_t shape, from;
     uint32_t geometry, first, count;

@@ -32,25 +32,25 @@ struct LocalPoint {
 /// Where a line meets a surface.
 struct LinePoint {
   double t = 0;       ///< Not finite where the surface is parallel to the line.
-  Vec3d normal{0};    ///< Of any length, to either side [part].
+  Vec3d normal{0};    ///< Normal of any length, to either side [part].
   double across = 0;  ///< normal · direction
 };
 
-/// What all kinds share.
+/// What all kinds of traced shapes share.
 struct TracedShape {
   uint32_t shape = 0;
   uint32_t first_primitive = 0;
   bool is_boundary = false;
   bool is_reversed = false;  ///< The outside is not where the normal of the coordinates points.
   bool needs_uv = true;      ///< SurfaceShape::needs_uv
-  Box3d box{};               ///< Around it [part], once it is in a TracedPart.
+  Box3d box{};               ///< Box around it [part], once it is in a TracedPart.
 };
 
 /// Vertices rounded to floats, which are what the surface is from there on.
 struct TracedVertices : TracedShape {
-  /// One more than there are: what traces them reads four floats at each.
+  /// Positions, and one more: what traces them reads four floats at each.
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;  ///< To the outside, of any length.
+  std::vector<Vec3f> normals;  ///< Normals to the outside, of any length.
   std::vector<Vec2f> uvs;
   std::vector<uint32_t> indices;
 
@@ -62,23 +62,23 @@ struct TracedVertices : TracedShape {
 
 struct TracedTriangles : TracedVertices {
   uint32_t count() const { return static_cast<uint32_t>(indices.size() / 3); }
-  /// Along (p1 - p0) x (p2 - p0), of twice the area.
+  /// The normal along (p1 - p0) x (p2 - p0), twice as long as the area.
   Vec3d plane_normal(uint32_t triangle) const;
-  /// To the outside at these barycentric coordinates of the second and third corner.
+  /// The normal to the outside at these barycentric coordinates of the second and third corner.
   Vec3d normal(uint32_t triangle, float u, float v) const;
   /// Where a line meets the plane of a triangle. In doubles, so that a ray that starts a few
   /// roundings off the plane never meets it again.
   LinePoint meet_plane(uint32_t triangle, const LocalRay& ray) const;
   LocalPoint describe(uint32_t triangle, float u, float v) const;
-  /// With the position on the ray, if it does not graze the triangle: that has more digits than the
-  /// barycentric coordinates.
+  /// Describes a point, by its position on the ray where that does not graze the triangle: it has
+  /// more digits than the barycentric coordinates.
   LocalPoint describe(uint32_t triangle, float u, float v, const LocalRay& ray) const;
 };
 
 struct TracedPatches : TracedVertices {
   uint32_t count() const { return static_cast<uint32_t>(indices.size() / 4); }
   BilinearPatch patch(uint32_t index) const;
-  /// To the outside.
+  /// The normal to the outside.
   Vec3d normal(uint32_t index, double u, double v) const;
   /// @param u, v of the patch, which need not be the texture coordinates
   LocalPoint describe(uint32_t index, double u, double v) const;

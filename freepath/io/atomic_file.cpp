@@ -27,16 +27,16 @@ std::string reason_of(int number) { return std::generic_category().message(numbe
 fs::path resolved(const std::string& path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
-  fs::path place = path;
-  for (int links = 0; fs::is_symlink(fs::symlink_status(place, error)); ++links) {
+  fs::path target = path;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, error)); ++links) {
     if (links == kMostLinks) fail("{}: a link that leads to itself; choose another name", path);
     // What /dev/stdout leads to is open elsewhere, and would not see that it is replaced.
-    if (place.string().starts_with("/proc/")) fail("{}: a stream, not a file; name a file", path);
-    place = place.parent_path() / fs::read_symlink(place, error);
+    if (target.string().starts_with("/proc/")) fail("{}: a stream, not a file; name a file", path);
+    target = target.parent_path() / fs::read_symlink(target, error);
     if (error) fail("{}: can't follow the link: {}", path, error.message());
   }
-  const fs::path real = fs::weakly_canonical(place, error);
-  return error ? place : real;
+  const fs::path real = fs::weakly_canonical(target, error);
+  return error ? target : real;
 }
 
 fs::path folder_of(const fs::path& target) {
@@ -56,7 +56,7 @@ std::string random_word() {
   return fmt::format("{:016x}", bits);
 }
 
-void check_file_place(const std::string& path) {
+void check_file_target(const std::string& path) {
   const fs::path target = resolved(path);
   const fs::path folder = folder_of(target);
   std::error_code error;
@@ -99,7 +99,7 @@ bool AtomicFile::take_name(Take take) {
 
 AtomicFile::AtomicFile(const std::string& path, AtomicKind kind)
     : path_(path), target_(resolved(path)) {
-  check_file_place(path);
+  check_file_target(path);
   if (kind == AtomicKind::kNamed || !open_nameless()) open_named();
 }
 
@@ -132,7 +132,7 @@ void AtomicFile::open_named() {
 }
 
 void AtomicFile::retarget(const std::string& path) {
-  check_file_place(path);
+  check_file_target(path);
   path_ = path;
   target_ = resolved(path);
 }

@@ -14,7 +14,7 @@ std::string random_word();
 /// exists and can be written to, the name is not too long, and what stands there already is a file
 /// that is not read-only. A link stands for the file that it leads to.
 /// @throws Error that names the file and what to do
-void check_file_place(const std::string& path);
+void check_file_target(const std::string& path);
 
 /// How an AtomicFile is kept until it is complete.
 enum class AtomicKind {
@@ -28,7 +28,7 @@ enum class AtomicKind {
 /// put into the folder is opened or followed.
 class AtomicFile {
  public:
-  /// @throws Error as check_file_place, and where the folder takes no file
+  /// @throws Error as check_file_target, and where the folder takes no file
   explicit AtomicFile(const std::string& path, AtomicKind kind = AtomicKind::kNameless);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile(const AtomicFile&) = delete;
@@ -37,9 +37,9 @@ class AtomicFile {
 
   /// The target as it was given, for messages.
   const std::string& path() const { return path_; }
-  /// Gives it another target in the same folder. @throws Error as check_file_place
+  /// Gives it another target in the same folder. @throws Error as check_file_target
   void retarget(const std::string& path);
-  /// What to open to write to it; opened again, it is begun anew.
+  /// The name to open to write to the file; opened again, it is begun anew.
   std::string name() const;
   /// Writes it as a whole. @throws Error that names the target
   void write(std::string_view contents) const;

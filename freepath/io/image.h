@@ -26,12 +26,13 @@ struct Image {
   int height = 0;
   std::vector<std::string> channels = {};  ///< Names: R, G, B, A, variance.R, ...
   std::vector<float> values = {};  ///< Interleaved: ((row · width) + column) · channels + channel
-  std::vector<std::pair<std::string, MetadataValue>> metadata = {};  ///< In the order of writing.
-  /// Where it lies in a larger picture that it is a part of, and the size of that [pixels]; a size
+  /// Attributes in the order of writing.
+  std::vector<std::pair<std::string, MetadataValue>> metadata = {};
+  /// Position in a larger picture that it is a part of, and the size of that [pixels]; a size
   /// of 0 is its own.
   int x = 0, y = 0, full_width = 0, full_height = 0;
 
-  /// Of the space of R, G and B, where it is not sRGB's.
+  /// Primaries of the space of R, G and B, where it is not sRGB's.
   std::optional<RgbChromaticities> chromaticities = {};
 
   std::size_t pixel_count() const { return static_cast<std::size_t>(width) * height; }
@@ -82,8 +83,8 @@ void check_writable(const std::string& path);
 /// How values are stored in an EXR file.
 enum class ExrPrecision {
   kFloat,
-  /// Of 16 bits, but for depths, positions, counts and variances, which need more. Values beyond
-  /// ±65504 are stored as ±65504.
+  /// Floats of 16 bits, but for depths, positions, counts and variances, which need more. Values
+  /// beyond ±65504 are stored as ±65504.
   kHalf
 };
 
@@ -93,15 +94,15 @@ enum class ExrCompression {
   kZip,   ///< 16 rows at a time.
   kZips,  ///< Row by row, for programs that read rows.
   kPiz,   ///< Wavelets, which suit grain.
-  kDwaa,  ///< Not exact: like JPEG, 32 rows at a time.
-  kDwab   ///< The same, 256 rows at a time.
+  kDwaa,  ///< Lossy like JPEG, 32 rows at a time.
+  kDwab   ///< Lossy like JPEG, 256 rows at a time.
 };
 
 /// The form of an EXR file.
 struct ExrFormat {
   ExrPrecision precision = ExrPrecision::kFloat;
   ExrCompression compression = ExrCompression::kZip;
-  /// Of kDwaa and kDwab: the larger, the smaller the file and the worse the picture.
+  /// Level of loss of kDwaa and kDwab: the larger, the smaller the file and the worse the picture.
   float dwa_level = 45;
 };
 
@@ -131,7 +132,7 @@ void write_png(const std::string& path, const Image& image, const PictureLook& l
 
 /// The sRGB transfer function, linear → encoded, both in [0, 1] [IEC61966].
 float srgb_from_linear(float linear);
-/// Its inverse.
+/// The linear value of one encoded by sRGB's curve: the inverse of srgb_from_linear.
 float linear_from_srgb(float encoded);
 
 }  // namespace freepath

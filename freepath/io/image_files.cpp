@@ -67,7 +67,7 @@ ImageFormat image_format(const std::string& path) {
 
 void check_writable(const std::string& path) {
   if (!is_plain_image(path)) image_format(path);
-  check_file_place(path);
+  check_file_target(path);
 }
 
 void write_exr(const std::string& path, const Image& image, const ExrFormat& format) {

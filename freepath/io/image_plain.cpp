@@ -22,7 +22,7 @@ namespace {
 using QoiPixel = std::array<uint8_t, 3>;
 
 /// Of 64 places, that of a pixel whose alpha is 255.
-std::size_t qoi_place(const QoiPixel& pixel) {
+std::size_t qoi_slot(const QoiPixel& pixel) {
   return (pixel[0] * 3U + pixel[1] * 5U + pixel[2] * 7U + 255U * 11U) % 64U;
 }
 
@@ -46,12 +46,12 @@ class QoiWriter {
       return;
     }
     end_run();
-    QoiPixel& seen = seen_[qoi_place(pixel)];
-    if (was_seen_[qoi_place(pixel)] && seen == pixel) {
-      bytes_.push_back(static_cast<uint8_t>(qoi_place(pixel)));
+    QoiPixel& seen = seen_[qoi_slot(pixel)];
+    if (was_seen_[qoi_slot(pixel)] && seen == pixel) {
+      bytes_.push_back(static_cast<uint8_t>(qoi_slot(pixel)));
     } else {
       seen = pixel;
-      was_seen_[qoi_place(pixel)] = true;
+      was_seen_[qoi_slot(pixel)] = true;
       add_difference(pixel);
     }
     last_ = pixel;

@@ -30,16 +30,17 @@ std::string mend_invalid_pixels(Image& image, const std::string& name, InvalidPo
     count += invalid ? 1 : 0;
   }
   if (count == 0) return {};
-  const std::string place =
+  const std::string location =
       fmt::format("pixel ({}, {}) is {}", first % image.width, first / image.width,
                   std::isnan(first_value) ? "NaN" : "infinite");
   if (policy == InvalidPolicy::kError) {
-    fail("{}: {}; repair the image, or have such values taken as 0 (--invalid zero)", name, place);
+    fail("{}: {}; repair the image, or have such values taken as 0 (--invalid zero)", name,
+         location);
   }
   return fmt::format("{}: {}; the first: {}", name,
                      counted(count, "pixel with values that are NaN or infinite was taken as 0",
                              "pixels with values that are NaN or infinite were taken as 0"),
-                     place);
+                     location);
 }
 
 }  // namespace freepath

@@ -66,7 +66,7 @@ class ClassicHeader {
     require(cursor_.offset(), elements > file_.size() ? elements : elements * size);
     cursor_.skip(std::min(padded(elements * size), file_.size() - cursor_.offset()));
   }
-  void require(uint64_t place, uint64_t bytes) const { file_.require(place, bytes); }
+  void require(uint64_t offset, uint64_t bytes) const { file_.require(offset, bytes); }
 
   /// Number of the elements of a list behind its tag.
   uint64_t list(uint32_t tag) {

@@ -33,26 +33,26 @@ constexpr std::string_view kTemperatureStandardNames[] = {"air_temperature"};
 
 /// A variable that is multiplied by its unit, to be read level by level.
 struct ScaledVariable {
-  std::size_t place = 0;
+  std::size_t index = 0;
   double scale = 1;
 };
 
 /// Checks that each dimension of a variable is one of the axes, so that it has values everywhere.
-void check_along(const NetcdfFile& netcdf, std::size_t place, const NetcdfAxes& axes) {
-  for (const int dimension : netcdf.variable(place).dimensions) {
+void check_along(const NetcdfFile& netcdf, std::size_t index, const NetcdfAxes& axes) {
+  for (const int dimension : netcdf.variable(index).dimensions) {
     const bool known = dimension == axes.time || dimension == axes.space[0] ||
                        dimension == axes.space[1] || dimension == axes.space[2];
     if (!known && netcdf.size(dimension) != 1) {
       fail("{} has other dimensions than the cloud water; interpolate both to the same",
-           printable(netcdf.variable(place).name));
+           printable(netcdf.variable(index).name));
     }
   }
 }
 
 /// The unit of a variable, by what a function says of its text.
 template <class Unit>
-auto unit_of(const NetcdfFile& netcdf, std::size_t place, std::string_view examples, Unit unit) {
-  const NetcdfVariable& variable = netcdf.variable(place);
+auto unit_of(const NetcdfFile& netcdf, std::size_t index, std::string_view examples, Unit unit) {
+  const NetcdfVariable& variable = netcdf.variable(index);
   const std::string text = variable.text("units");
   const auto found = unit(text);
   if (!found) {
@@ -77,10 +77,10 @@ std::optional<ScaledVariable> find_scaled(const NetcdfFile& netcdf, const Netcdf
                                           Names names, Names standard_names,
                                           std::string_view examples,
                                           std::optional<double> (*unit)(std::string_view)) {
-  const auto place = netcdf.find(names, standard_names);
-  if (!place) return std::nullopt;
-  check_along(netcdf, *place, axes);
-  return ScaledVariable{*place, unit_of(netcdf, *place, examples, unit)};
+  const auto index = netcdf.find(names, standard_names);
+  if (!index) return std::nullopt;
+  check_along(netcdf, *index, axes);
+  return ScaledVariable{*index, unit_of(netcdf, *index, examples, unit)};
 }
 
 /// What a level of extinction is made of.
@@ -125,7 +125,7 @@ CloudParts find_parts(const NetcdfFile& netcdf, std::size_t water, const NetcdfA
 /// Values of a level in units of SI.
 std::vector<double> scaled_level(const NetcdfFile& netcdf, const ScaledVariable& variable,
                                  const NetcdfAxes& axes, std::size_t z, std::size_t time) {
-  std::vector<double> values = netcdf.level(variable.place, axes, z, time);
+  std::vector<double> values = netcdf.level(variable.index, axes, z, time);
   for (double& value : values) value *= variable.scale;
   return values;
 }

@@ -13,7 +13,7 @@ namespace freepath::io {
 
 /// Values of a level, x fastest.
 using NetcdfLevel = std::function<std::vector<double>(std::size_t z)>;
-/// The same at a time.
+/// Values of a level of a quantity at a time.
 using NetcdfQuantityLevel = std::function<std::vector<double>(std::size_t z, std::size_t time)>;
 /// Levels of a quantity over some axes. Throws Error, without a place, where it can't be had.
 using NetcdfQuantity = std::function<NetcdfQuantityLevel(const NetcdfAxes& axes)>;

@@ -40,22 +40,22 @@ NetcdfAxis axis_of_letter(std::string_view letter) {
 
 /// Sets the step, if all are alike but for rounding to float.
 void find_step(NetcdfCoordinates& coordinates) {
-  const std::vector<double>& places = coordinates.places;
-  const double range = places.back() - places.front();
-  coordinates.step = range / static_cast<double>(places.size() - 1);
-  const double largest = std::max(std::abs(places.front()), std::abs(places.back()));
+  const std::vector<double>& positions = coordinates.positions;
+  const double range = positions.back() - positions.front();
+  coordinates.step = range / static_cast<double>(positions.size() - 1);
+  const double largest = std::max(std::abs(positions.front()), std::abs(positions.back()));
   const double tolerance =
       1e-3 * std::abs(coordinates.step) + 2 * std::numeric_limits<float>::epsilon() * largest;
   coordinates.uniform = true;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double even = places.front() + coordinates.step * static_cast<double>(i);
-    if (!std::isfinite(places[i])) {
-      fail("its {} holds {}; correct it", coordinates.name, places[i]);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double even = positions.front() + coordinates.step * static_cast<double>(i);
+    if (!std::isfinite(positions[i])) {
+      fail("its {} holds {}; correct it", coordinates.name, positions[i]);
     }
-    if (i > 0 && !((places[i] - places[i - 1]) * range > 0)) {
+    if (i > 0 && !((positions[i] - positions[i - 1]) * range > 0)) {
       fail("its {} neither rises nor falls throughout; sort the samples", coordinates.name);
     }
-    coordinates.uniform = coordinates.uniform && std::abs(places[i] - even) <= tolerance;
+    coordinates.uniform = coordinates.uniform && std::abs(positions[i] - even) <= tolerance;
   }
 }
 
@@ -107,9 +107,9 @@ NetcdfAxis NetcdfFile::axis_of(int dimension) const {
   return axis_of_name(lower_case(name));
 }
 
-NetcdfAxes NetcdfFile::axes(std::size_t variable_place) const {
+NetcdfAxes NetcdfFile::axes(std::size_t variable_index) const {
   NetcdfAxes axes;
-  for (const int dimension : variable(variable_place).dimensions) {
+  for (const int dimension : variable(variable_index).dimensions) {
     const NetcdfAxis axis = axis_of(dimension);
     const auto set = [&](int& target) {
       if (target >= 0) {
@@ -161,22 +161,22 @@ NetcdfCoordinates NetcdfFile::coordinates(int dimension) const {
   check_declared(file_->name(), fmt::format("{} coordinates {}", count, coordinates.name),
                  static_cast<double>(count) * sizeof(double), file_->size());
   const std::size_t first = 0;
-  coordinates.places = read(*found, std::span(&first, 1), std::span(&count, 1));
-  for (double& place : coordinates.places) place *= *meters;
+  coordinates.positions = read(*found, std::span(&first, 1), std::span(&count, 1));
+  for (double& position : coordinates.positions) position *= *meters;
   find_step(coordinates);
   return coordinates;
 }
 
-std::vector<double> NetcdfFile::read(std::size_t variable_place, std::span<const std::size_t> first,
+std::vector<double> NetcdfFile::read(std::size_t variable_index, std::span<const std::size_t> first,
                                      std::span<const std::size_t> counts) const {
   std::size_t total = 1;
   for (const std::size_t count : counts) total *= count;
   std::vector<double> values(total);
-  const std::string reason = handle_->read(variable_place, first, counts, values);
+  const std::string reason = handle_->read(variable_index, first, counts, values);
   if (!reason.empty()) {
-    file_->fail_damaged(fmt::format("{}: {}", printable(variable(variable_place).name), reason));
+    file_->fail_damaged(fmt::format("{}: {}", printable(variable(variable_index).name), reason));
   }
-  const NetcdfVariable& described = variable(variable_place);
+  const NetcdfVariable& described = variable(variable_index);
   const bool real = described.type == "float" || described.type == "double";
   // What NetCDF writes where nothing was written, of reals.
   constexpr double kFill = 9.9692099683868690e+36;
@@ -192,9 +192,9 @@ std::vector<double> NetcdfFile::read(std::size_t variable_place, std::span<const
   return values;
 }
 
-std::vector<double> NetcdfFile::level(std::size_t variable_place, const NetcdfAxes& axes,
+std::vector<double> NetcdfFile::level(std::size_t variable_index, const NetcdfAxes& axes,
                                       std::size_t z, std::size_t time) const {
-  const std::vector<int>& dimensions = variable(variable_place).dimensions;
+  const std::vector<int>& dimensions = variable(variable_index).dimensions;
   std::vector<std::size_t> first(dimensions.size(), 0), counts(dimensions.size(), 1);
   bool has_x = false, has_y = false, x_first = false;
   for (std::size_t i = 0; i < dimensions.size(); ++i) {
@@ -206,7 +206,7 @@ std::vector<double> NetcdfFile::level(std::size_t variable_place, const NetcdfAx
     (dimension == axes.space[0] ? has_x : has_y) = true;
     if (dimension == axes.space[0] && !has_y) x_first = true;
   }
-  std::vector<double> stored = read(variable_place, first, counts);
+  std::vector<double> stored = read(variable_index, first, counts);
   const std::size_t nx = size(axes.space[0]), ny = size(axes.space[1]);
   if (has_x && has_y && !x_first) return stored;
   std::vector<double> plane(nx * ny);

@@ -20,9 +20,9 @@ enum class NetcdfAxis { kX, kY, kZ, kTime, kOther };
 
 /// Coordinates along an axis of space.
 struct NetcdfCoordinates {
-  std::string name;            ///< Of the dimension.
-  std::vector<double> places;  ///< Of the samples [m].
-  double step = 0;             ///< Between them, if uniform [m].
+  std::string name;               ///< Name of the dimension.
+  std::vector<double> positions;  ///< Positions of the samples [m].
+  double step = 0;                ///< Distance of neighbouring samples, if uniform [m].
   bool uniform = false;
 };
 
@@ -43,7 +43,7 @@ class NetcdfFile {
 
   const VolumeFile& file() const { return *file_; }
   const std::vector<NetcdfVariable>& variables() const { return contents_.variables; }
-  const NetcdfVariable& variable(std::size_t place) const { return contents_.variables[place]; }
+  const NetcdfVariable& variable(std::size_t index) const { return contents_.variables[index]; }
   std::size_t size(int dimension) const {
     return contents_.dimensions[static_cast<std::size_t>(dimension)].size;
   }

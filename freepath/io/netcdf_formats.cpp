@@ -100,9 +100,9 @@ class OpenNetcdf : public NetcdfHandle {
     variable.type = type_name(type);
     for (int i = 0; i < rank; ++i) {
       const int dimension = dimensions[static_cast<std::size_t>(i)];
-      const auto place = std::find(dimension_ids.begin(), dimension_ids.end(), dimension);
-      if (place == dimension_ids.end()) return NC_EBADDIM;
-      variable.dimensions.push_back(static_cast<int>(place - dimension_ids.begin()));
+      const auto found = std::find(dimension_ids.begin(), dimension_ids.end(), dimension);
+      if (found == dimension_ids.end()) return NC_EBADDIM;
+      variable.dimensions.push_back(static_cast<int>(found - dimension_ids.begin()));
     }
     for (int i = 0; i < attributes; ++i) {
       if (const int status = nc_inq_attname(file_, id, i, name.data())) return status;

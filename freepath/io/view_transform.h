@@ -7,7 +7,7 @@ namespace freepath {
 
 /// Light of a scene → light of a screen, both linear sRGB.
 enum class ViewTransform {
-  kStandard,  ///< As it is; what is brighter than the screen is clipped.
+  kStandard,  ///< Colours as they are; what is brighter than the screen is clipped.
   kNeutral,   ///< The neutral tone mapper of [KhronosNeutral].
 };
 

@@ -30,9 +30,9 @@ struct GridRange {
 
 /// One grid of a volume file.
 struct GridInfo {
-  std::string name;  ///< With a suffix where several share it: "density", "density[1]".
+  std::string name;  ///< Name, with a suffix where several share it: "density", "density[1]".
   int index = 0;     ///< Place in the file, from 0.
-  std::string type;  ///< Of a voxel: "float", "half", "int32", "bool", "Fp8", "vec3s", ...
+  std::string type;  ///< Type of a voxel: "float", "half", "int32", "bool", "Fp8", "vec3s", ...
   /// "fog volume", "level set", "staggered" or "unknown"; of files with a value for each voxel
   /// where those are: "samples", "samples at nodes" or "samples in cells".
   std::string grid_class;
@@ -41,15 +41,15 @@ struct GridInfo {
   Matrix4d index_to_world;
   /// Inclusive bounds of the active voxels, and of inactive ones that are not 0 [index].
   Vec3i active_min{0}, active_max{-1};
-  uint64_t active_voxels = 0;      ///< Those of active tiles included.
+  uint64_t active_voxels = 0;      ///< Number of active voxels, those of active tiles included.
   uint64_t inactive_voxels = 0;    ///< Inactive ones that are not 0: they count as they are.
   uint64_t active_tiles = 0;       ///< Constant cubes of 8, 128 or 4096 voxels a side.
   uint64_t stored_bytes = 0;       ///< Bytes of the grid in the file.
-  float minimum = 0, maximum = 0;  ///< Of all channels, as GridRange.
+  float minimum = 0, maximum = 0;  ///< Range over all channels, as GridRange.
   int channels = 1;                ///< Densities in a voxel: 3 in a grid of vectors, R, G, B.
-  std::vector<GridRange> ranges;   ///< Of each channel, once it has been read.
-  std::string length_unit;   ///< Of positions, as the file has it: "m", "mm"; empty: not told.
-  std::string value_unit;    ///< Of values, "1/m", as the file has it; empty: not told.
+  std::vector<GridRange> ranges;   ///< Range of each channel, once it has been read.
+  std::string length_unit;   ///< Unit of positions, as the file has it: "m", "mm"; empty: not told.
+  std::string value_unit;    ///< Unit of values, "1/m", as the file has it; empty: not told.
   int times = 1;             ///< How often the grid stands in the file.
   int time = 0;              ///< The one that is meant, from 0.
   bool time_chosen = false;  ///< Whether the selection named it.
@@ -65,7 +65,8 @@ struct GridInfo {
 /// @throws Error if the file can't be read or is no volume
 std::vector<GridInfo> list_grids(const std::filesystem::path& path);
 
-/// The same of the headers alone, without bounds, ranges and counts: no voxel is read.
+/// All grids of a file, from the headers alone: without bounds, ranges and counts: no voxel is
+/// read.
 /// @throws Error as list_grids
 std::vector<GridInfo> list_grid_heads(const std::filesystem::path& path);
 
@@ -96,7 +97,7 @@ struct LoadOptions {
   NegativePolicy negative = NegativePolicy::kError;
   InvalidPolicy invalid = InvalidPolicy::kZero;
   bool scalar_only = false;        ///< Refuse grids of vectors.
-  std::optional<RawLayout> raw{};  ///< Of the values in a file that has no header.
+  std::optional<RawLayout> raw{};  ///< Layout of the values in a file that has no header.
   /// Effective radius of droplets where a NetCDF file has none [m]; 0: it must have.
   double effective_radius = 0;
 };
@@ -106,12 +107,13 @@ struct LoadedField {
   Field field;
   std::vector<std::string> warnings;  ///< One sentence each, with file and grid.
   uint64_t clamped_voxels = 0;        ///< Negative ones set to 0.
-  uint64_t invalid_voxels = 0;        ///< Those set to 0 by InvalidPolicy::kZero.
-  uint64_t active_voxels = 0;         ///< Those of active tiles included.
+  uint64_t invalid_voxels = 0;        ///< Number of voxels set to 0 by InvalidPolicy::kZero.
+  uint64_t active_voxels = 0;         ///< Number of active voxels, those of active tiles included.
   uint64_t inactive_voxels = 0;       ///< Inactive ones that are not 0.
   uint64_t active_tiles = 0;
-  float minimum = 0, maximum = 0;       ///< Of all that are active or not 0, after clamping.
-  std::string length_unit, value_unit;  ///< As GridInfo has them.
+  /// Range of all values that are active or not 0, after clamping.
+  float minimum = 0, maximum = 0;
+  std::string length_unit, value_unit;  ///< Units, as GridInfo has them.
 
   /// Whether nothing is in it: a field of zeros, a voxel large.
   bool empty() const { return active_voxels + inactive_voxels == 0; }
@@ -129,7 +131,7 @@ struct LoadedField {
 ///   InvalidPolicy), or negative (see NegativePolicy)
 LoadedField load_field(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// The same for a grid of any number of channels: one field, or three of one transform and layout
+/// Loads a grid of any number of channels: one field, or three of one transform and layout
 /// for the densities of R, G and B that a grid of vectors holds.
 /// @throws Error as load_field; about a value it names the channel too
 std::vector<LoadedField> load_fields(const std::filesystem::path& path,

@@ -15,8 +15,9 @@ namespace freepath {
 template <class Real>
 struct VoxelArray {
   const Real* values = nullptr;
-  std::array<std::size_t, 3> counts{};      ///< Voxels along x, y and z.
-  std::array<std::ptrdiff_t, 3> strides{};  ///< From one voxel to the next along each [values].
+  std::array<std::size_t, 3> counts{};  ///< Voxels along x, y and z.
+  /// Step from one voxel to the next along each axis [values].
+  std::array<std::ptrdiff_t, 3> strides{};
 };
 
 /// Copies an array into a field whose voxels are all active, from voxel (0, 0, 0) on. Bricks of one

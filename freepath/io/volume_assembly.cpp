@@ -56,7 +56,7 @@ bool is_clampable(T value) {
 }
 
 void record_first(std::optional<ValueScan::Bad>& first, const ValueScan::Bad& found) {
-  if (!first || found.place < first->place) first = found;
+  if (!first || found.rank < first->rank) first = found;
 }
 
 /// "voxel (1, 2, 3) is NaN"
@@ -88,18 +88,18 @@ BrickMapBuilder make_builder(const std::string& where, const VolumeLayout& layou
   ValueScan bounds;
   for (const Vec3i& leaf : layout.leaves) extend(bounds, leaf, leaf + Vec3i(7));
   std::unordered_set<float> tile_values;
-  std::size_t places = layout.leaves.size();
+  std::size_t coord_count = layout.leaves.size();
   for (const VolumeTile& tile : layout.tiles) {
     extend(bounds, tile.origin, tile.origin + Vec3i(tile.size - 1));
     tile_values.insert(static_cast<float>(tile.value));
-    places += cube(tile.size / BrickMap::kBrickSize);
+    coord_count += cube(tile.size / BrickMap::kBrickSize);
   }
   const std::size_t bricks = layout.leaves.size() + tile_values.size();
   check_memory_present(where, fmt::format("{} bricks of 8x8x8 voxels", bricks),
                        static_cast<double>(bricks) * kLeafVoxels * sizeof(float));
   // One voxel of an empty grid.
   if (bricks == 0) extend(bounds, Vec3i(0), Vec3i(0));
-  return {bounds.active_min, bounds.active_max, bricks, places};
+  return {bounds.active_min, bounds.active_max, bricks, coord_count};
 }
 
 }  // namespace
@@ -125,9 +125,9 @@ void ValueScan::merge(const ValueScan& other) {
 }
 
 template <class T>
-float ValueCheck::mend(T value, const Vec3i& voxel, uint64_t place, uint64_t voxels,
+float ValueCheck::mend(T value, const Vec3i& voxel, uint64_t rank, uint64_t voxels,
                        ValueScan& scan) const {
-  const ValueScan::Bad found{place, voxel, static_cast<double>(value)};
+  const ValueScan::Bad found{rank, voxel, static_cast<double>(value)};
   if (is_clampable(value)) {
     if (negative == NegativePolicy::kClamp) {
       scan.negative_voxels += voxels;
@@ -143,12 +143,12 @@ float ValueCheck::mend(T value, const Vec3i& voxel, uint64_t place, uint64_t vox
   return 0;
 }
 
-float ValueCheck::tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) const {
+float ValueCheck::tile(const VolumeTile& tile, uint64_t rank, ValueScan& scan) const {
   float value = 0;
   if (is_density(tile.value)) {
     value = static_cast<float>(tile.value);
   } else if (tile.active || !is_background(tile.value, background)) {
-    value = mend(tile.value, tile.origin, place, cube(tile.size), scan);
+    value = mend(tile.value, tile.origin, rank, cube(tile.size), scan);
   }
   if (!tile.active && (value == 0 || is_background(tile.value, background))) return 0;
   (tile.active ? scan.active_voxels : scan.inactive_voxels) += cube(tile.size);
@@ -159,7 +159,7 @@ float ValueCheck::tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) 
 }
 
 template <class T>
-void ValueCheck::leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t place,
+void ValueCheck::leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t rank,
                       float* brick, ValueScan& scan) const {
   float minimum = scan.minimum, maximum = scan.maximum;
   uint64_t kept[8];
@@ -176,7 +176,7 @@ void ValueCheck::leaf(const T* values, const uint64_t* mask, const Vec3i& origin
       }
       const float density = is_density(value)
                                 ? static_cast<float>(value)
-                                : mend(value, origin + Vec3i(slice, i >> 3, i & 7), place, 1, scan);
+                                : mend(value, origin + Vec3i(slice, i >> 3, i & 7), rank, 1, scan);
       if (!is_active && density == 0) continue;
       bits |= uint64_t{1} << i;
       brick[offset] = density;
@@ -296,7 +296,7 @@ GridAssembly::GridAssembly(const std::string& file, const std::string& grid,
   std::vector<VolumeLayout> layouts = std::move(layout).take();
   channels_.reserve(layouts.size());
   for (std::size_t channel = 0; channel < layouts.size(); ++channel) {
-    std::string where = grid_place(file, grid);
+    std::string where = grid_label(file, grid);
     if (layouts.size() > 1) where += fmt::format(", channel {}", kChannelNames[channel]);
     channels_.emplace_back(where, options, std::move(layouts[channel]), keep_values);
   }

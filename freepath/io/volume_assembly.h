@@ -107,7 +107,8 @@ class GridLayout {
 /// What was found among values that are active or not 0. Merging doesn't depend on the order.
 struct ValueScan {
   struct Bad {
-    uint64_t place = 0;  ///< Place in the grid; the first bad value is the one reported.
+    /// Position in the order of the grid; the first bad value is the one reported.
+    uint64_t rank = 0;
     Vec3i voxel;
     double value = 0;
   };
@@ -133,22 +134,22 @@ struct ValueCheck {
   InvalidPolicy invalid = InvalidPolicy::kZero;
   double background = 0;
 
-  /// Checks a tile's value, `place` being its rank in the grid.
-  float tile(const VolumeTile& tile, uint64_t place, ValueScan& scan) const;
+  /// Checks a tile's value. `rank`, its position in the order of the grid, tells which comes first.
+  float tile(const VolumeTile& tile, uint64_t rank, ValueScan& scan) const;
 
   /// Checks the values of a leaf and writes 512 floats: inactive ones are kept, unless they are the
   /// background.
   /// @param values 512 values, offset 64x + 8y + z
   /// @param mask 512 bits, active ones set
   template <class T>
-  void leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t place,
+  void leaf(const T* values, const uint64_t* mask, const Vec3i& origin, uint64_t rank,
             float* bricks, ValueScan& scan) const;
 
  private:
   /// The float of a value that is no density.
   /// @param voxels how many have it
   template <class T>
-  float mend(T value, const Vec3i& voxel, uint64_t place, uint64_t voxels, ValueScan& scan) const;
+  float mend(T value, const Vec3i& voxel, uint64_t rank, uint64_t voxels, ValueScan& scan) const;
 };
 
 /// What was found in each channel of a grid.
@@ -182,7 +183,7 @@ class FieldAssembly {
   /// @throws Error for a bad value
   LoadedField finish(std::string name, const Matrix4d& index_to_world, const ValueScan& scan) &&;
 
-  /// The same numbers for a list of grids; its range grows by this channel's.
+  /// Enters the numbers of a scan into a list of grids; the range there grows by this channel's.
   void describe(const ValueScan& scan, GridInfo& info) const;
 
  private:
@@ -227,7 +228,7 @@ class GridAssembly {
   /// @throws Error for a bad value
   std::vector<LoadedField> finish(const GridInfo& info, const GridScan& scan) &&;
 
-  /// The same numbers for a list of grids.
+  /// Enters the numbers of a scan into a list of grids.
   void describe(const GridScan& scan, GridInfo& info) const;
 
  private:
@@ -247,7 +248,7 @@ void set_failure(const std::string& file, std::string_view message, GridInfo& gr
 void check_selected(const std::string& file, const GridInfo& info, const LoadOptions& options);
 
 /// The start of messages about a grid.
-std::string grid_place(const std::string& file, const std::string& grid);
+std::string grid_label(const std::string& file, const std::string& grid);
 
 /// Why a grid of this class can't be a density; empty if it can.
 std::string reason_against_class(const std::string& grid_class);

@@ -85,14 +85,14 @@ class Base64Bytes : public ByteSource {
   int next_character() {
     static constexpr std::array<int, 256> kNumbers = base64_numbers();
     while (true) {
-      if (place_ == size_) {
+      if (offset_ == size_) {
         size_ = text_->read_some(window_);
-        place_ = 0;
+        offset_ = 0;
         if (size_ == 0) return kNoCharacter;
       }
-      const int number = kNumbers[static_cast<uint8_t>(window_[place_])];
+      const int number = kNumbers[static_cast<uint8_t>(window_[offset_])];
       if (number == kNoCharacter) return number;  // stays there
-      ++place_;
+      ++offset_;
       if (number != kBlank) return number;
     }
   }
@@ -119,7 +119,7 @@ class Base64Bytes : public ByteSource {
 
   ByteSourcePointer text_;
   std::vector<std::byte> window_;
-  std::size_t place_ = 0, size_ = 0;  // in the window
+  std::size_t offset_ = 0, size_ = 0;  // in the window
   std::array<std::byte, 3> decoded_{};
   std::size_t first_ = 0, last_ = 0;  // of those decoded
 };
@@ -132,18 +132,18 @@ class GzipBytes : public ByteSource {
   std::size_t read_some(std::span<std::byte> bytes) override {
     std::size_t done = 0;
     while (done < bytes.size()) {
-      if (place_ == unpacked_.size() && !unpack_more()) break;
-      const std::size_t count = std::min(bytes.size() - done, unpacked_.size() - place_);
-      std::copy_n(reinterpret_cast<const std::byte*>(unpacked_.data()) + place_, count,
+      if (offset_ == unpacked_.size() && !unpack_more()) break;
+      const std::size_t count = std::min(bytes.size() - done, unpacked_.size() - offset_);
+      std::copy_n(reinterpret_cast<const std::byte*>(unpacked_.data()) + offset_, count,
                   bytes.begin() + static_cast<std::ptrdiff_t>(done));
-      place_ += count;
+      offset_ += count;
       done += count;
     }
     return done;
   }
 
   void check_end() override {
-    if (place_ == unpacked_.size()) unpack_more();
+    if (offset_ == unpacked_.size()) unpack_more();
   }
 
  private:
@@ -158,7 +158,7 @@ class GzipBytes : public ByteSource {
 
   bool unpack_more() {
     unpacked_.clear();
-    place_ = 0;
+    offset_ = 0;
     try {
       while (unpacked_.empty()) {
         if (!reader_.append_to(unpacked_)) return false;
@@ -172,7 +172,7 @@ class GzipBytes : public ByteSource {
   std::string packed_;
   GzipReader reader_;
   std::string unpacked_;
-  std::size_t place_ = 0;  // in what is unpacked
+  std::size_t offset_ = 0;  // in what is unpacked
 };
 
 uint64_t take_word(ByteSource& stored, std::size_t word, std::endian order) {
@@ -210,11 +210,11 @@ class ZlibBlocks : public ByteSource {
   std::size_t read_some(std::span<std::byte> bytes) override {
     std::size_t done = 0;
     while (done < bytes.size()) {
-      if (place_ == unpacked_.size() && !unpack_block()) break;
-      const std::size_t count = std::min(bytes.size() - done, unpacked_.size() - place_);
-      std::copy_n(unpacked_.begin() + static_cast<std::ptrdiff_t>(place_), count,
+      if (offset_ == unpacked_.size() && !unpack_block()) break;
+      const std::size_t count = std::min(bytes.size() - done, unpacked_.size() - offset_);
+      std::copy_n(unpacked_.begin() + static_cast<std::ptrdiff_t>(offset_), count,
                   bytes.begin() + static_cast<std::ptrdiff_t>(done));
-      place_ += count;
+      offset_ += count;
       done += count;
     }
     return done;
@@ -231,7 +231,7 @@ class ZlibBlocks : public ByteSource {
     packed_.resize(packed_size);
     stored_->read(packed_);
     unpacked_.resize(size);
-    place_ = 0;
+    offset_ = 0;
     uLongf unpacked_size = size;
     const int status = uncompress(reinterpret_cast<Bytef*>(unpacked_.data()), &unpacked_size,
                                   reinterpret_cast<const Bytef*>(packed_.data()), packed_.size());
@@ -246,7 +246,7 @@ class ZlibBlocks : public ByteSource {
   std::vector<uint64_t> packed_sizes_;
   std::size_t next_ = 0;  // block
   std::vector<std::byte> packed_, unpacked_;
-  std::size_t place_ = 0;  // in what is unpacked
+  std::size_t offset_ = 0;  // in what is unpacked
 };
 
 }  // namespace

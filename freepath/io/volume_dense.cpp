@@ -208,12 +208,12 @@ class DenseReader : public VolumeReader {
     const std::string& note = grid_of(head).note;
     if (!note.empty()) {
       fields.front().warnings.push_back(
-          fmt::format("{}: {}", grid_place(file_.name(), head.name), note));
+          fmt::format("{}: {}", grid_label(file_.name(), head.name), note));
     }
     if (head.times > 1 && !head.time_chosen) {
       fields.front().warnings.push_back(
           fmt::format("{}: it has {} times; the first is read, and --grid {}@1 takes the next",
-                      grid_place(file_.name(), head.name), head.times, head.name));
+                      grid_label(file_.name(), head.name), head.times, head.name));
     }
   }
 
@@ -266,20 +266,20 @@ class TextPlanes : public PlaneSource {
 
   /// The next character; 0 at the end.
   char peek() {
-    if (place_ == size_) {
+    if (offset_ == size_) {
       size_ = text_->read_some(std::as_writable_bytes(std::span(window_)));
-      place_ = 0;
+      offset_ = 0;
       if (size_ == 0) return 0;
     }
-    return window_[place_];
+    return window_[offset_];
   }
 
   double next_number() {
-    while (is_between(peek())) ++place_;
+    while (is_between(peek())) ++offset_;
     word_.clear();
     for (char c = peek(); c != 0 && !is_between(c) && word_.size() < kLongestNumber; c = peek()) {
       word_ += c;
-      ++place_;
+      ++offset_;
     }
     const std::optional<double> number = number_of(word_);
     if (word_.empty()) text_->file().fail_damaged("its values end too soon");
@@ -291,7 +291,7 @@ class TextPlanes : public PlaneSource {
 
   ByteSourcePointer text_;
   std::vector<char> window_;
-  std::size_t place_ = 0, size_ = 0;
+  std::size_t offset_ = 0, size_ = 0;
   std::string word_;
 };
 

@@ -65,9 +65,9 @@ Vec3i checked_counts(const VolumeFile& file, std::string_view what, std::span<co
 
 /// How values stand in a file.
 enum class DensePacking {
-  kNone,     ///< As they are, or longer.
-  kText,     ///< As text: a digit and a blank each, at least.
-  kDeflate,  ///< By gzip or zlib.
+  kNone,     ///< Bytes as they are, or longer.
+  kText,     ///< Text: a digit and a blank each, at least.
+  kDeflate,  ///< Packed by gzip or zlib.
   kUnknown   ///< Left out, perhaps, where they are alike.
 };
 

@@ -124,7 +124,7 @@ double largest_difference(const FrustumMap& map, const LinearGrid& grid, const B
 
 }  // namespace
 
-void resample_frustum(const std::string& place, const FrustumMap& map,
+void resample_frustum(const std::string& label, const FrustumMap& map,
                       std::vector<LoadedField>& fields) {
   Vec3i low = fields[0].field.voxels.active_min(), high = fields[0].field.voxels.active_max();
   for (const LoadedField& loaded : fields) {
@@ -146,7 +146,7 @@ void resample_frustum(const std::string& place, const FrustumMap& map,
     loaded.warnings.push_back(fmt::format(
         "{}: its transform is a frustum: resampled to {} x {} x {} voxels of one size; the "
         "largest difference at 4096 points is {:.2g}, of densities up to {:.4g}",
-        place, grid.counts.x, grid.counts.y, grid.counts.z, difference, loaded.maximum));
+        label, grid.counts.x, grid.counts.y, grid.counts.z, difference, loaded.maximum));
     loaded.field.voxels = std::move(resampled);
     loaded.field.index_to_world = index_to_frustum * map.frustum_to_world;
   }

@@ -16,8 +16,8 @@ struct FrustumMap {
   Vec3d origin;  ///< The index point that is 0 in the frustum's space.
   double width =
       1;  ///< Voxels across the plane at the origin, which is 1 wide in the frustum's space.
-  double step = 1;    ///< From one plane to the next in the frustum's space.
-  double growth = 0;  ///< Of the planes' width, by unit of z.
+  double step = 1;    ///< Distance of neighbouring planes in the frustum's space.
+  double growth = 0;  ///< Growth of the planes' width by unit of z.
   Matrix4d frustum_to_world;
 
   /// Edge of a voxel in x and y at a depth; not positive behind the camera.
@@ -38,8 +38,8 @@ struct FrustumMap {
 /// Replaces fields in the index space of a frustum by ones whose voxels all have the size of those
 /// at its near end (larger if that makes too many), planes in z staying where they are. A warning
 /// says how many voxels that makes, and the largest difference of the interpolants at 4096 points.
-/// @param place the beginning of the warning
-void resample_frustum(const std::string& place, const FrustumMap& map,
+/// @param label the beginning of the warning
+void resample_frustum(const std::string& label, const FrustumMap& map,
                       std::vector<LoadedField>& fields);
 
 }  // namespace freepath::io

@@ -126,16 +126,16 @@ void make_names_unique(std::vector<GridInfo>& grids) {
 void set_failure(const std::string& file, std::string_view message, GridInfo& grid) {
   grid.loadable = false;
   if (!grid.reason.empty()) return;
-  for (const std::string& place : {grid_place(file, grid.name), file}) {
-    if (message.starts_with(place + ": ")) {
-      message.remove_prefix(place.size() + 2);
+  for (const std::string& label : {grid_label(file, grid.name), file}) {
+    if (message.starts_with(label + ": ")) {
+      message.remove_prefix(label.size() + 2);
       break;
     }
   }
   grid.reason = message;
 }
 
-std::string grid_place(const std::string& file, const std::string& grid) {
+std::string grid_label(const std::string& file, const std::string& grid) {
   return fmt::format("{}: grid \"{}\"", file, grid);
 }
 
@@ -182,10 +182,10 @@ std::string reason_against_type(const std::string& type) {
 }
 
 void check_selected(const std::string& file, const GridInfo& info, const LoadOptions& options) {
-  const std::string place = grid_place(file, info.name);
-  if (!info.loadable) fail("{}: {}", place, info.reason);
+  const std::string label = grid_label(file, info.name);
+  if (!info.loadable) fail("{}: {}", label, info.reason);
   if (options.scalar_only && info.channels != 1) {
-    fail("{}: its voxels are of type {}, which are {} densities; choose a grid of one", place,
+    fail("{}: its voxels are of type {}, which are {} densities; choose a grid of one", label,
          info.type, info.channels);
   }
 }

@@ -34,14 +34,14 @@ class NetcdfPlanes : public PlaneSource {
     }
     const std::size_t last = levels_.size() - 1;
     const double share = static_cast<double>(plane) / (planes_ - 1);
-    const double place = levels_.front() + (levels_.back() - levels_.front()) * share;
+    const double level = levels_.front() + (levels_.back() - levels_.front()) * share;
     const bool rising = levels_.back() > levels_.front();
     while (lower_ + 1 < last &&
-           (rising ? levels_[lower_ + 1] <= place : levels_[lower_ + 1] >= place)) {
+           (rising ? levels_[lower_ + 1] <= level : levels_[lower_ + 1] >= level)) {
       ++lower_;
     }
     const double weight =
-        std::clamp((place - levels_[lower_]) / (levels_[lower_ + 1] - levels_[lower_]), 0.0, 1.0);
+        std::clamp((level - levels_[lower_]) / (levels_[lower_ + 1] - levels_[lower_]), 0.0, 1.0);
     const std::vector<double>&below = cached(lower_), &above = cached(lower_ + 1);
     for (std::size_t i = 0; i < values.size(); ++i) {
       // A missing value counts only where it has a weight.
@@ -70,24 +70,25 @@ class NetcdfPlanes : public PlaneSource {
 /// How many planes of one distance stand for levels of several.
 /// @throws Error, without a place, if there were too many
 int planes_for(const NetcdfCoordinates& z) {
-  double least = std::abs(z.places[1] - z.places[0]);
-  for (std::size_t i = 1; i < z.places.size(); ++i) {
-    least = std::min(least, std::abs(z.places[i] - z.places[i - 1]));
+  double least = std::abs(z.positions[1] - z.positions[0]);
+  for (std::size_t i = 1; i < z.positions.size(); ++i) {
+    least = std::min(least, std::abs(z.positions[i] - z.positions[i - 1]));
   }
-  const double planes = std::ceil(std::abs(z.places.back() - z.places.front()) / least - 1e-3) + 1;
+  const double planes =
+      std::ceil(std::abs(z.positions.back() - z.positions.front()) / least - 1e-3) + 1;
   constexpr double kMostTimes = 16;
-  if (planes > kMostTimes * static_cast<double>(z.places.size())) {
+  if (planes > kMostTimes * static_cast<double>(z.positions.size())) {
     fail(
         "its levels {} lie {:.4g} m apart at least, which would make {} planes of {}; interpolate "
         "it to even levels",
-        z.name, least, planes, z.places.size());
+        z.name, least, planes, z.positions.size());
   }
   return static_cast<int>(planes);
 }
 
 /// Sets where the samples lie.
 /// @return places of the levels [m]; none if they are even
-std::vector<double> place_grid(const NetcdfFile& netcdf, const NetcdfAxes& axes, DenseGrid& grid) {
+std::vector<double> set_axes(const NetcdfFile& netcdf, const NetcdfAxes& axes, DenseGrid& grid) {
   grid.info.length_unit = "m";
   grid.info.grid_class = "samples";
   std::vector<double> levels;
@@ -95,7 +96,7 @@ std::vector<double> place_grid(const NetcdfFile& netcdf, const NetcdfAxes& axes,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int k = static_cast<int>(axis);
     NetcdfCoordinates along = netcdf.coordinates(axes.space[axis]);
-    counts[axis] = static_cast<double>(along.places.size());
+    counts[axis] = static_cast<double>(along.positions.size());
     if (!along.uniform && axis < 2) {
       fail("its coordinates {} are not evenly spaced; interpolate it to such", along.name);
     }
@@ -103,13 +104,13 @@ std::vector<double> place_grid(const NetcdfFile& netcdf, const NetcdfAxes& axes,
       counts[axis] = planes_for(along);
       grid.note = fmt::format(
           "its {} levels {} are not evenly spaced: interpolated to {} planes, {:.4g} m apart",
-          along.places.size(), along.name, counts[axis],
-          std::abs(along.places.back() - along.places.front()) / (counts[axis] - 1));
-      levels = along.places;
-      along.step = (along.places.back() - along.places.front()) / (counts[axis] - 1);
+          along.positions.size(), along.name, counts[axis],
+          std::abs(along.positions.back() - along.positions.front()) / (counts[axis] - 1));
+      levels = along.positions;
+      along.step = (along.positions.back() - along.positions.front()) / (counts[axis] - 1);
     }
     grid.info.index_to_world[k][k] = along.step;
-    grid.info.index_to_world[3][k] = along.places.front();
+    grid.info.index_to_world[3][k] = along.positions.front();
   }
   grid.counts = checked_counts(netcdf.file(), "an axis with", counts);
   check_dense_size(netcdf.file(), grid.counts, 1, DensePacking::kUnknown);
@@ -133,7 +134,7 @@ DenseGrid netcdf_grid(const std::shared_ptr<const NetcdfFile>& netcdf, std::stri
     const NetcdfAxes axes = netcdf->axes(variable);
     if (!axes.in_space()) fail("it isn't along x, y and z");
     const NetcdfQuantityLevel level = quantity(axes);
-    std::vector<double> levels = place_grid(*netcdf, axes, grid);
+    std::vector<double> levels = set_axes(*netcdf, axes, grid);
     grid.info.stored_bytes = dense_bytes(grid.counts, sizeof(float));
     grid.open = [level, levels, planes = grid.counts.z](const GridInfo& head) {
       const auto time = static_cast<std::size_t>(head.time);

@@ -20,12 +20,12 @@ namespace {
 constexpr std::size_t kNifti1Header = 348, kNifti2Header = 540;
 
 /// Where the fields of a header stand [bytes], which differs between the versions.
-struct NiftiPlaces {
+struct NiftiOffsets {
   std::size_t magic, dim, datatype, bitpix, pixdim, vox_offset, slope, qform, sform, quatern,
       qoffset, rows, units;
 };
-constexpr NiftiPlaces kNifti1{344, 40, 70, 72, 76, 108, 112, 252, 254, 256, 268, 280, 123};
-constexpr NiftiPlaces kNifti2{4, 16, 12, 14, 104, 168, 176, 344, 348, 352, 376, 400, 500};
+constexpr NiftiOffsets kNifti1{344, 40, 70, 72, 76, 108, 112, 252, 254, 256, 268, 280, 123};
+constexpr NiftiOffsets kNifti2{4, 16, 12, 14, 104, 168, 176, 344, 348, 352, 376, 400, 500};
 
 /// A header, of which numbers are taken in the order of its bytes.
 class NiftiHeader {
@@ -37,7 +37,7 @@ class NiftiHeader {
     };
     order_ = first(std::endian::little) ? std::endian::little : std::endian::big;
     if (!first(order_)) file.fail_damaged("the size of its header is neither 348 nor 540");
-    const std::string_view magic(reinterpret_cast<const char*>(bytes_.data()) + places().magic, 4);
+    const std::string_view magic(reinterpret_cast<const char*>(bytes_.data()) + offsets().magic, 4);
     if (magic == std::string_view("ni1\0", 4) || magic == std::string_view("ni2\0", 4)) {
       fail("{}: its values stand in another file (.img); write both as one (.nii)", file.name());
     }
@@ -49,30 +49,31 @@ class NiftiHeader {
 
   const VolumeFile& file() const { return file_; }
   bool second() const { return bytes_.size() == kNifti2Header; }
-  const NiftiPlaces& places() const { return second() ? kNifti2 : kNifti1; }
+  const NiftiOffsets& offsets() const { return second() ? kNifti2 : kNifti1; }
   std::endian order() const { return order_; }
 
   /// A whole number of 16 bits in the first version, of 64 or 32 in the second.
   int64_t dim(std::size_t i) const {
-    return second() ? number<int64_t>(places().dim + 8 * i) : number<int16_t>(places().dim + 2 * i);
+    return second() ? number<int64_t>(offsets().dim + 8 * i)
+                    : number<int16_t>(offsets().dim + 2 * i);
   }
-  int code(std::size_t place) const {
-    return second() ? number<int32_t>(place) : number<int16_t>(place);
+  int code(std::size_t offset) const {
+    return second() ? number<int32_t>(offset) : number<int16_t>(offset);
   }
-  int datatype() const { return number<int16_t>(places().datatype); }
-  int bitpix() const { return number<int16_t>(places().bitpix); }
+  int datatype() const { return number<int16_t>(offsets().datatype); }
+  int bitpix() const { return number<int16_t>(offsets().bitpix); }
   int units() const {
-    return second() ? number<int32_t>(places().units)
-                    : std::to_integer<int>(bytes_[places().units]);
+    return second() ? number<int32_t>(offsets().units)
+                    : std::to_integer<int>(bytes_[offsets().units]);
   }
   /// Number i of a row of reals, of 32 bits in the first version, of 64 in the second.
-  double real(std::size_t place, std::size_t i = 0) const {
-    return second() ? number<double>(place + 8 * i)
-                    : static_cast<double>(number<float>(place + 4 * i));
+  double real(std::size_t offset, std::size_t i = 0) const {
+    return second() ? number<double>(offset + 8 * i)
+                    : static_cast<double>(number<float>(offset + 4 * i));
   }
   /// The same where it must be finite. @throws Error that names the field
-  double finite(std::string_view what, std::size_t place, std::size_t i = 0) const {
-    const double value = real(place, i);
+  double finite(std::string_view what, std::size_t offset, std::size_t i = 0) const {
+    const double value = real(offset, i);
     if (!std::isfinite(value)) {
       fail("{}: {} in its header is {}; correct it", file_.name(), what, value);
     }
@@ -80,21 +81,21 @@ class NiftiHeader {
   }
   /// Where the values begin.
   double begin() const {
-    return second() ? static_cast<double>(number<int64_t>(places().vox_offset))
-                    : static_cast<double>(number<float>(places().vox_offset));
+    return second() ? static_cast<double>(number<int64_t>(offsets().vox_offset))
+                    : static_cast<double>(number<float>(offsets().vox_offset));
   }
 
  private:
   template <class T>
-  T number(std::size_t place, std::endian order) const {
+  T number(std::size_t offset, std::endian order) const {
     std::array<std::byte, sizeof(T)> stored;
-    std::memcpy(stored.data(), bytes_.data() + place, sizeof(T));
+    std::memcpy(stored.data(), bytes_.data() + offset, sizeof(T));
     if (order != std::endian::native) std::reverse(stored.begin(), stored.end());
     return std::bit_cast<T>(stored);
   }
   template <class T>
-  T number(std::size_t place) const {
-    return number<T>(place, order_);
+  T number(std::size_t offset) const {
+    return number<T>(offset, order_);
   }
 
   const VolumeFile& file_;
@@ -146,10 +147,10 @@ std::optional<NumberType> nifti_number_type(int code) {
 
 /// Positions of voxel centres by a rotation, as a quaternion without its first number.
 Matrix4d nifti_qform(const NiftiHeader& header) {
-  const NiftiPlaces& places = header.places();
-  const double b = header.finite("quatern_b", places.quatern, 0);
-  const double c = header.finite("quatern_c", places.quatern, 1);
-  const double d = header.finite("quatern_d", places.quatern, 2);
+  const NiftiOffsets& offsets = header.offsets();
+  const double b = header.finite("quatern_b", offsets.quatern, 0);
+  const double c = header.finite("quatern_c", offsets.quatern, 1);
+  const double d = header.finite("quatern_d", offsets.quatern, 2);
   const double square = b * b + c * c + d * d;
   constexpr double kRounding = 1e-4;
   if (square > 1 + kRounding) {
@@ -163,33 +164,33 @@ Matrix4d nifti_qform(const NiftiHeader& header) {
       {a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
       {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
       {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}};
-  const double handed = header.finite("pixdim[0]", places.pixdim, 0) < 0 ? -1 : 1;
+  const double handed = header.finite("pixdim[0]", offsets.pixdim, 0) < 0 ? -1 : 1;
   Matrix4d matrix;
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    const double step = header.finite("pixdim", places.pixdim, 1 + i) * (axis == 2 ? handed : 1);
+    const double step = header.finite("pixdim", offsets.pixdim, 1 + i) * (axis == 2 ? handed : 1);
     for (int k = 0; k < 3; ++k) matrix[axis][k] = rotation[k][axis] * step;
-    matrix[3][axis] = header.finite("qoffset", places.qoffset, i);
+    matrix[3][axis] = header.finite("qoffset", offsets.qoffset, i);
   }
   return matrix;
 }
 
 Matrix4d nifti_transform(const NiftiHeader& header) {
-  const NiftiPlaces& places = header.places();
+  const NiftiOffsets& offsets = header.offsets();
   Matrix4d matrix;
-  if (header.code(places.sform) > 0) {
+  if (header.code(offsets.sform) > 0) {
     for (int k = 0; k < 3; ++k) {
       for (int axis = 0; axis < 4; ++axis) {
         matrix[axis][k] = header.finite(
-            "srow", places.rows, 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis));
+            "srow", offsets.rows, 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis));
       }
     }
-  } else if (header.code(places.qform) > 0) {
+  } else if (header.code(offsets.qform) > 0) {
     return nifti_qform(header);
   } else {
     for (std::size_t i = 0; i < 3; ++i) {
       const int axis = static_cast<int>(i);
-      matrix[axis][axis] = header.finite("pixdim", places.pixdim, 1 + i);
+      matrix[axis][axis] = header.finite("pixdim", offsets.pixdim, 1 + i);
     }
   }
   return matrix;
@@ -235,10 +236,10 @@ void read_nifti_dimensions(const NiftiHeader& header, DenseGrid& grid) {
 }  // namespace
 
 bool is_nifti(const VolumeFile& file) {
-  const auto has = [&](std::size_t place, std::string_view mark) {
+  const auto has = [&](std::size_t offset, std::string_view mark) {
     std::string found(mark.size(), '\0');
-    if (file.size() < place + mark.size()) return false;
-    file.read(place, std::as_writable_bytes(std::span(found)));
+    if (file.size() < offset + mark.size()) return false;
+    file.read(offset, std::as_writable_bytes(std::span(found)));
     return found == mark;
   };
   const bool sized =
@@ -264,10 +265,10 @@ VolumeReaderPointer open_nifti(const VolumeFile& file, bool packed) {
   grid.info.index_to_world = nifti_transform(header);
   grid.info.length_unit = nifti_length_unit(header);
   StoredNumbers numbers{*type, header.order()};
-  const double slope = header.finite("scl_slope", header.places().slope, 0);
+  const double slope = header.finite("scl_slope", header.offsets().slope, 0);
   if (slope != 0) {  // 0: values are as they are stored
     numbers.slope = slope;
-    numbers.intercept = header.finite("scl_inter", header.places().slope, 1);
+    numbers.intercept = header.finite("scl_inter", header.offsets().slope, 1);
   }
   const double begin = header.begin();
   const auto least = static_cast<double>(header.second() ? kNifti2Header : kNifti1Header);
@@ -288,8 +289,8 @@ VolumeReaderPointer open_nifti(const VolumeFile& file, bool packed) {
   }
   grid.info.stored_bytes = packed ? file.size() : bytes;
   grid.open = [&file, packed, first, bytes, numbers](const GridInfo& head) {
-    const uint64_t place = first + static_cast<uint64_t>(head.time) * bytes;
-    return number_planes(nifti_bytes(file, packed, place), numbers);
+    const uint64_t offset = first + static_cast<uint64_t>(head.time) * bytes;
+    return number_planes(nifti_bytes(file, packed, offset), numbers);
   };
   std::vector<DenseGrid> grids;
   grids.push_back(std::move(grid));

@@ -169,8 +169,8 @@ Matrix4d nrrd_space(const NrrdHeader& header, const NrrdAxes& axes, const std::s
     for (int k = 0; k < 3; ++k) matrix[static_cast<int>(axis)][k] = edge[k];
   }
   if (const auto origin = header.find({"space origin"})) {
-    const Vec3d place = nrrd_vector(file, "'space origin'", *origin);
-    for (int k = 0; k < 3; ++k) matrix[3][k] = place[k];
+    const Vec3d position = nrrd_vector(file, "'space origin'", *origin);
+    for (int k = 0; k < 3; ++k) matrix[3][k] = position[k];
   }
   return matrix;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kNvdbChunkBytes = std::size_t{1} << 20;
 
 /// A node or leaf that a parent refers to.
-struct NodePlace {
+struct NodeLocation {
   uint64_t offset = 0;  ///< In the grid.
   Vec3i origin;         ///< First voxel.
 };
@@ -38,29 +38,29 @@ class TreeWalk {
   TreeWalk(const VolumeFile& file, NvdbBytes& bytes) : file_(&file), bytes_(&bytes) {}
 
   GridLayout layout{ValueChannels<decltype(Root::mBackground)>::kCount};
-  std::vector<NodePlace> leaves;  ///< In the order of the file, as in the layout.
+  std::vector<NodeLocation> leaves;  ///< In the order of the file, as in the layout.
 
   void read(uint64_t root_offset) {
-    std::vector<NodePlace> upper = read_root(root_offset);
+    std::vector<NodeLocation> upper = read_root(root_offset);
     // Two nodes of the root at one place would hold two values there.
     check_distinct(*file_, std::move(root_origins_));
     sort_level(upper, sizeof(Upper));
-    std::vector<NodePlace> lower;
-    for (const NodePlace& place : upper) read_node<Upper, 32, 128>(place, lower);
+    std::vector<NodeLocation> lower;
+    for (const NodeLocation& location : upper) read_node<Upper, 32, 128>(location, lower);
     sort_level(lower, sizeof(Lower));
-    for (const NodePlace& place : lower) read_node<Lower, 16, 8>(place, leaves);
+    for (const NodeLocation& location : lower) read_node<Lower, 16, 8>(location, leaves);
     sort_level(leaves, 1);
-    for (const NodePlace& leaf : leaves) layout.add_leaf(leaf.origin);
+    for (const NodeLocation& leaf : leaves) layout.add_leaf(leaf.origin);
   }
 
  private:
-  std::vector<NodePlace> read_root(uint64_t offset) {
+  std::vector<NodeLocation> read_root(uint64_t offset) {
     check_alignment(offset);
     bytes_->read(offset, buffer_.resize(sizeof(Root)));
     const uint32_t count = buffer_.node<Root>(0).mTableSize;
     layout.set_background(kIsMask ? Value{} : buffer_.node<Root>(0).mBackground);
     end_ = offset + sizeof(Root);
-    std::vector<NodePlace> children;
+    std::vector<NodeLocation> children;
     using Tile = typename Root::Tile;
     for (uint32_t i = 0; i < count; ++i) {
       bytes_->read(end_, buffer_.resize(sizeof(Tile)));
@@ -79,21 +79,21 @@ class TreeWalk {
   }
 
   template <class Node, int kSide, int kEntrySize>
-  void read_node(const NodePlace& place, std::vector<NodePlace>& children) {
-    bytes_->read(place.offset, buffer_.resize(sizeof(Node)));
+  void read_node(const NodeLocation& location, std::vector<NodeLocation>& children) {
+    bytes_->read(location.offset, buffer_.resize(sizeof(Node)));
     const Node& node = buffer_.node<Node>(0);
     constexpr int kEntries = kSide * kSide * kSide;
     if (is_uniform<kEntries>(node)) {
-      add_tile(place.origin, kEntrySize * kSide, node.mTable[0].value, node.mValueMask.isOn(0));
+      add_tile(location.origin, kEntrySize * kSide, node.mTable[0].value, node.mValueMask.isOn(0));
       return;
     }
     for (int entry = 0; entry < kEntries; ++entry) {
       const Vec3i origin =
-          place.origin +
+          location.origin +
           Vec3i(entry / (kSide * kSide), entry / kSide % kSide, entry % kSide) * kEntrySize;
       if (node.mChildMask.isOn(entry)) {
         children.push_back(
-            {place.offset + static_cast<uint64_t>(node.mTable[entry].child), origin});
+            {location.offset + static_cast<uint64_t>(node.mTable[entry].child), origin});
       } else {
         add_tile(origin, kEntrySize, node.mTable[entry].value, node.mValueMask.isOn(entry));
       }
@@ -128,10 +128,10 @@ class TreeWalk {
 
   /// Orders the nodes of a level as they stand in the file; they must not overlap each other or
   /// what was read before.
-  void sort_level(std::vector<NodePlace>& nodes, uint64_t node_size) {
+  void sort_level(std::vector<NodeLocation>& nodes, uint64_t node_size) {
     std::sort(nodes.begin(), nodes.end(),
-              [](const NodePlace& a, const NodePlace& b) { return a.offset < b.offset; });
-    for (const NodePlace& node : nodes) {
+              [](const NodeLocation& a, const NodeLocation& b) { return a.offset < b.offset; });
+    for (const NodeLocation& node : nodes) {
       check_alignment(node.offset);
       if (node.offset < end_ || node.offset > bytes_->size()) {
         file_->fail_damaged(fmt::format("two nodes at byte {} of their grid", node.offset));
@@ -164,7 +164,7 @@ constexpr std::size_t largest_leaf() {
 }
 
 template <class Build>
-std::shared_ptr<NvdbChunk> read_chunk(NvdbBytes& bytes, const std::vector<NodePlace>& leaves,
+std::shared_ptr<NvdbChunk> read_chunk(NvdbBytes& bytes, const std::vector<NodeLocation>& leaves,
                                       std::size_t first) {
   if (first == leaves.size()) return nullptr;
   auto chunk = std::make_shared<NvdbChunk>();
@@ -197,7 +197,7 @@ std::size_t leaf_size(const Leaf& leaf) {
 
 template <class Build>
 GridScan take_chunk(const VolumeFile& file, const NvdbChunk& chunk,
-                    const std::vector<NodePlace>& leaves, const GridAssembly& assembly) {
+                    const std::vector<NodeLocation>& leaves, const GridAssembly& assembly) {
   using Leaf = typename nanovdb::NanoLeaf<Build>::DataType;
   using Value = typename Leaf::ValueType;
   GridScan scan;
@@ -223,8 +223,8 @@ GridScan take_chunk(const VolumeFile& file, const NvdbChunk& chunk,
 
 /// Reads all leaves: one thread reads and uncompresses, all decode.
 template <class Build>
-GridScan read_leaves(const VolumeFile& file, NvdbBytes& bytes, const std::vector<NodePlace>& leaves,
-                     const GridAssembly& assembly) {
+GridScan read_leaves(const VolumeFile& file, NvdbBytes& bytes,
+                     const std::vector<NodeLocation>& leaves, const GridAssembly& assembly) {
   std::size_t next = 0;
   return scan_chunks<NvdbChunk>(
       [&] {

@@ -51,7 +51,8 @@ class NodeBuffer {
 /// What the headers of a grid say.
 struct NvdbHead {
   Matrix4d index_to_world;
-  std::array<uint64_t, 4> node_offsets{};  ///< Of leaves, lower, upper nodes and root in the grid.
+  /// Offsets in the grid of leaves, lower, upper nodes and root.
+  std::array<uint64_t, 4> node_offsets{};
 };
 
 /// All grids of a file.

@@ -25,9 +25,9 @@ BrickMap scaled_voxels(const Field& field, double factor) {
            value, factor);
     };
     if (std::ranges::all_of(voxels, [&](float value) { return value == voxels[0]; })) {
-      builder.add_constant_brick(placed.place, scaled(voxels[0]));
+      builder.add_constant_brick(placed.coord, scaled(voxels[0]));
     } else {
-      std::ranges::transform(voxels, builder.add_brick(placed.place).begin(), scaled);
+      std::ranges::transform(voxels, builder.add_brick(placed.coord).begin(), scaled);
     }
   });
   return std::move(builder).finish();

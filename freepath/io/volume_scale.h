@@ -5,7 +5,7 @@
 
 namespace freepath {
 
-/// The same field with all values and all lengths multiplied.
+/// A field with all values and all lengths multiplied.
 /// @param values finite and not negative
 /// @param lengths finite and positive
 /// @throws Error that names the grid if a value leaves the range of float

@@ -69,7 +69,7 @@ class HeaderFields {
   uint64_t end() const { return end_; }
   /// The value of a field, under any of its names; nothing where it isn't given.
   std::optional<std::string> find(std::initializer_list<const char*> names) const;
-  /// The same of one that has to be there. @throws Error that names the first of the names
+  /// The text of an entry that has to be there. @throws Error that names the first of the names
   std::string get(std::initializer_list<const char*> names) const;
 
  protected:

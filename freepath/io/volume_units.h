@@ -18,7 +18,7 @@ enum class WaterKind { kByVolume, kByMass };
 /// A unit of liquid water content: of kg/m³ by volume of air, or kg/kg by its mass.
 struct WaterUnit {
   WaterKind kind = WaterKind::kByVolume;
-  double scale = 1;  ///< To kg/m³ or kg/kg.
+  double scale = 1;  ///< Factor from its unit to kg/m³ or kg/kg.
 };
 
 /// A unit of liquid water content, "g m-3" or "kg/kg" and other ways to write those; nothing if a

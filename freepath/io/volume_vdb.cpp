@@ -249,8 +249,8 @@ GridScan take_chunk(const VdbChunk& chunk, const TreeSource& source, const T& ba
 template <class T>
 AssembledGrid read_tree(const TreeSource& source, const std::string& name,
                         const LoadOptions& options, bool keep_values) {
-  const VdbPlaces places = read_vdb_places(source.file, source.directory, source.grid);
-  FileCursor cursor(source.file, places.topology);
+  const VdbLocation location = read_vdb_location(source.file, source.directory, source.grid);
+  FileCursor cursor(source.file, location.topology);
   LayoutVisitor<T> visitor(source.directory, source.grid, source.format);
   VdbTopology(cursor, source.format, visitor).read();
   const T background = visitor.background_value();
@@ -258,7 +258,7 @@ AssembledGrid read_tree(const TreeSource& source, const std::string& name,
   result.assembly = std::make_unique<GridAssembly>(source.file.name(), name, options,
                                                    std::move(visitor.layout), keep_values);
   // Older files have the transform between topology and leaves.
-  ChunkReader reader(source.file, std::max(cursor.offset(), places.end), source.format,
+  ChunkReader reader(source.file, std::max(cursor.offset(), location.end), source.format,
                      result.assembly->leaf_count());
   result.scan =
       scan_chunks<VdbChunk>([&] { return reader.next(); },
@@ -305,9 +305,9 @@ class VdbReader : public VolumeReader {
   }
 
   void finish(const GridInfo& head, std::vector<LoadedField>& fields) const override {
-    const VdbPlaces places = read_vdb_places(file_, directory_, grid_of(head));
-    if (places.frustum) {
-      resample_frustum(grid_place(file_.name(), head.name), *places.frustum, fields);
+    const VdbLocation location = read_vdb_location(file_, directory_, grid_of(head));
+    if (location.frustum) {
+      resample_frustum(grid_label(file_.name(), head.name), *location.frustum, fields);
     }
   }
 
@@ -324,9 +324,9 @@ class VdbReader : public VolumeReader {
     info.channels = known && info.type.starts_with("vec3") ? 3 : 1;
     info.reason = known ? reason_against_class(info.grid_class) : reason_against_type(info.type);
     if (!known && directory_.file_version < kVdbInstances) return info;
-    const VdbPlaces places = read_vdb_places(file_, directory_, grid);
-    info.index_to_world = places.index_to_world;
-    if (info.reason.empty()) info.reason = places.reason;
+    const VdbLocation location = read_vdb_location(file_, directory_, grid);
+    info.index_to_world = location.index_to_world;
+    if (info.reason.empty()) info.reason = location.reason;
     info.loadable = info.reason.empty();
     return info;
   }

@@ -64,7 +64,7 @@ Descriptor read_descriptor(FileCursor& cursor, uint32_t file_version) {
 }
 
 /// Takes the extent of a grid that the descriptor tells.
-void place_grid(const FileCursor& cursor, Descriptor& descriptor) {
+void take_extent(const FileCursor& cursor, Descriptor& descriptor) {
   const auto size = static_cast<int64_t>(cursor.file().size());
   const auto [begin, end] = std::pair(descriptor.begin, descriptor.end);
   if (begin < static_cast<int64_t>(cursor.offset()) || end < begin || end > size) {
@@ -132,15 +132,15 @@ bool find_end(FileCursor& cursor, const VdbDirectory& directory, VdbGrid& grid) 
         vdb_value_type(grid));
     return false;
   }
-  const VdbPlaces places = read_vdb_places(cursor.file(), directory, grid);
-  if (places.end == 0) {
+  const VdbLocation location = read_vdb_location(cursor.file(), directory, grid);
+  if (location.end == 0) {
     grid.end = cursor.file().size();
-    grid.reason = places.reason;
+    grid.reason = location.reason;
     return false;
   }
-  uint64_t end = places.end;
+  uint64_t end = location.end;
   if (grid.tree_of < 0) {
-    const VdbTreeEnds tree = skip_vdb_topology(cursor.file(), places.topology, *format);
+    const VdbTreeEnds tree = skip_vdb_topology(cursor.file(), location.topology, *format);
     cursor.seek(std::max(tree.end, end));
     for (uint64_t leaf = 0; leaf < tree.leaves; ++leaf) cursor.skip(vdb_leaf_size(cursor, *format));
     end = cursor.offset();
@@ -156,22 +156,22 @@ VdbDirectory read_vdb_directory(const VolumeFile& file) {
   FileCursor cursor(file, 0);
   VdbDirectory directory;
   const Header header = read_header(cursor, directory);
-  std::map<std::string, int> places;
+  std::map<std::string, int> numbers;
   for (uint32_t i = 0; i < header.grids; ++i) {
     Descriptor descriptor = read_descriptor(cursor, directory.file_version);
     VdbGrid& grid = descriptor.grid;
     if (!descriptor.parent.empty()) {
-      const auto found = places.find(descriptor.parent);
-      if (found == places.end()) {
+      const auto found = numbers.find(descriptor.parent);
+      if (found == numbers.end()) {
         file.fail_damaged(
             fmt::format("grid \"{}\" shares the tree of a grid that isn't there", grid.name));
       }
       const int shared = directory.grids[static_cast<std::size_t>(found->second)].tree_of;
       grid.tree_of = shared >= 0 ? shared : found->second;
     }
-    places.emplace(descriptor.unique_name, static_cast<int>(i));
+    numbers.emplace(descriptor.unique_name, static_cast<int>(i));
     if (header.has_offsets) {
-      place_grid(cursor, descriptor);
+      take_extent(cursor, descriptor);
     } else {
       grid.begin = cursor.offset();
     }

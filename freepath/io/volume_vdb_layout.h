@@ -20,7 +20,7 @@
 namespace freepath::io {
 
 // Versions of the format at which the layout changed.
-inline constexpr uint32_t kVdbOldest = 214;     ///< Of those with today's root and inner nodes.
+inline constexpr uint32_t kVdbOldest = 214;  ///< Oldest version with today's root and inner nodes.
 inline constexpr uint32_t kVdbInstances = 216;  ///< Trees may be shared; transforms go first.
 inline constexpr uint32_t kVdbBoolBits = 217;   ///< Leaves of truth values are bits.
 inline constexpr uint32_t kVdbTextUuid = 218;
@@ -35,7 +35,7 @@ inline constexpr uint32_t kVdbZip = 1, kVdbActiveMask = 2, kVdbBlosc = 4;
 
 /// Where a grid stands, and what its metadata says.
 struct VdbGrid {
-  std::string name;             ///< As the grid was named.
+  std::string name;             ///< Name that the grid was given.
   std::string tree_type;        ///< "Tree_float_5_4_3".
   bool half = false;            ///< Reals are stored in half precision.
   int tree_of = -1;             ///< The grid whose tree this one shares, -1 for its own.
@@ -61,7 +61,7 @@ VdbDirectory read_vdb_directory(const VolumeFile& file);
 std::string vdb_value_type(const VdbGrid& grid);
 
 /// The transform of a grid, and where its tree stands.
-struct VdbPlaces {
+struct VdbLocation {
   Matrix4d index_to_world;
   uint64_t topology = 0;                   ///< Offset of the tree.
   uint64_t end = 0;                        ///< Where the transform ends in the file.
@@ -70,7 +70,7 @@ struct VdbPlaces {
 };
 
 /// Reads the transform of a grid.
-VdbPlaces read_vdb_places(const VolumeFile& file, const VdbDirectory& directory,
-                          const VdbGrid& grid);
+VdbLocation read_vdb_location(const VolumeFile& file, const VdbDirectory& directory,
+                              const VdbGrid& grid);
 
 }  // namespace freepath::io

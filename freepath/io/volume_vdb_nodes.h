@@ -25,8 +25,8 @@ enum class VdbLeafKind { kValues, kBools, kNothing };
 struct VdbValueFormat {
   uint32_t file_version = kVdbNewest;
   uint32_t compression = 0;
-  std::size_t value_size = 4;   ///< Of a value in memory [bytes].
-  std::size_t stored_size = 4;  ///< Of a value in the file [bytes], 2 for half.
+  std::size_t value_size = 4;   ///< Size of a value in memory [bytes].
+  std::size_t stored_size = 4;  ///< Size of a value in the file [bytes], 2 for half.
   VdbLeafKind leaf = VdbLeafKind::kValues;
 };
 

@@ -14,17 +14,17 @@ Vec3i vtk_counts(const VtkImage& image, VtkSamples samples) {
 
 Matrix4d vtk_transform(const VtkImage& image, VtkSamples samples) {
   Matrix4d matrix;
-  Vec3d place = image.origin;
+  Vec3d position = image.origin;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int i = static_cast<int>(axis);
     const Vec3d edge =
         Vec3d(image.direction[axis], image.direction[3 + axis], image.direction[6 + axis]) *
         image.spacing[i];
     const bool between = samples == VtkSamples::kCells && image.nodes[i] > 1;
-    place += edge * (image.first[axis] + (between ? 0.5 : 0));
+    position += edge * (image.first[axis] + (between ? 0.5 : 0));
     for (int k = 0; k < 3; ++k) matrix[i][k] = edge[k];
   }
-  for (int k = 0; k < 3; ++k) matrix[3][k] = place[k];
+  for (int k = 0; k < 3; ++k) matrix[3][k] = position[k];
   return matrix;
 }
 

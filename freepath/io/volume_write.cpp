@@ -48,11 +48,11 @@ void add_brick(std::span<const float> voxels, const openvdb::Coord& origin,
 /// Puts a name of the contents where OpenVDB writes a random one, so that the same fields give the
 /// same bytes.
 void name_by_contents(const std::filesystem::path& path) {
-  constexpr std::streamoff kPlace = 21;  // behind magic number, versions and a flag
+  constexpr std::streamoff kOffset = 21;  // behind magic number, versions and a flag
   std::string name = "00000000-0000-0000-0000-000000000000";
   const auto write = [&] {
     std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-    file.seekp(kPlace);
+    file.seekp(kOffset);
     file.write(name.data(), static_cast<std::streamsize>(name.size()));
     file.close();
     if (!file) fail("{}", std::generic_category().message(errno));
@@ -95,7 +95,7 @@ openvdb::FloatGrid::Ptr openvdb_grid_of(const Field& field) {
   grid->setTransform(transform_of(field));
   const BrickMap& map = field.voxels;
   map.for_each_brick([&](const PlacedBrick& placed) {
-    const Vec3i origin = placed.place * BrickMap::kBrickSize;
+    const Vec3i origin = placed.coord * BrickMap::kBrickSize;
     add_brick(map.voxels().subspan(std::size_t{placed.brick} * BrickMap::kBrickVoxels,
                                    BrickMap::kBrickVoxels),
               openvdb::Coord(origin.x, origin.y, origin.z), grid->tree());

@@ -31,7 +31,7 @@ VolumeFormat volume_format(const std::string& path);
 /// @throws Error if there is no field, a transform is not invertible, or the file can't be written
 void write_vdb(const std::filesystem::path& path, std::span<const Field* const> fields,
                const VdbWriteOptions& options = {});
-/// The same to a file that is open already.
+/// Writes grids to a file that is open already.
 void write_vdb(AtomicFile& file, std::span<const Field* const> fields,
                const VdbWriteOptions& options = {});
 

@@ -64,11 +64,11 @@ Densities densities_at(double altitude) {
 }
 
 /// Where values are kept: closer together near the ground.
-double altitude_of(double place, int count) {
-  const double u = place / (count - 1);
+double altitude_of(double node, int count) {
+  const double u = node / (count - 1);
   return kTop * u * u * u;
 }
-double place_of(double altitude, int count) {
+double node_of(double altitude, int count) {
   return std::cbrt(std::clamp(altitude / kTop, 0.0, 1.0)) * (count - 1);
 }
 
@@ -151,7 +151,7 @@ Vec3d Atmosphere::compute_higher_orders(double altitude, double sun_height) cons
 
 Vec3d Atmosphere::higher_orders(double altitude, double sun_height) const {
   const double x = std::clamp((sun_height + 1) / 2, 0.0, 1.0) * (kSunHeights - 1);
-  const double y = place_of(altitude, kAltitudes);
+  const double y = node_of(altitude, kAltitudes);
   const int j = std::min(static_cast<int>(x), kSunHeights - 2);
   const int i = std::min(static_cast<int>(y), kAltitudes - 2);
   const auto row = [&](int k) {

@@ -10,7 +10,7 @@ namespace freepath {
 /// What light meets on its way straight up through the whole atmosphere, for the dominant
 /// wavelengths of red, green and blue (611, 549, 464 nm): optical depths.
 struct AirColumn {
-  Vec3d rayleigh;  ///< Of air, 0.008735 λ^-4.08 with λ in µm [Preetham99, A.1].
+  Vec3d rayleigh;  ///< Depth of air, 0.008735 λ^-4.08 with λ in µm [Preetham99, A.1].
   Vec3d aerosol;   ///< Ångström's formula, (0.04608 T - 0.04586) λ^-1.3 for turbidity T.
 };
 AirColumn air_column(double turbidity);
@@ -27,7 +27,8 @@ AirColumn air_column(double turbidity);
 class Atmosphere {
  public:
   static constexpr double kAerosolAlbedo = 0.95;  ///< Single scattering; air absorbs nothing.
-  static constexpr double kAerosolG = 0.76;       ///< Of Henyey and Greenstein's phase function.
+  /// Asymmetry of Henyey and Greenstein's phase function.
+  static constexpr double kAerosolG = 0.76;
 
   /// @param sun_height cosine of the angle of the sun from the zenith, where the observer stands
   /// @param turbidity in [2, 10]
@@ -35,16 +36,17 @@ class Atmosphere {
 
   /// A view from near the ground.
   struct View {
-    double altitude = 0;  ///< Of the observer [km].
+    double altitude = 0;  ///< Altitude of the observer [km].
     double height = 1;    ///< Cosine of the angle of the line of sight from the zenith.
-    double azimuth = 0;   ///< Of the line of sight from the sun's [radians].
+    double azimuth = 0;   ///< Azimuth of the line of sight from the sun's [radians].
   };
 
   /// What comes along a line of sight, without the sun's disc, but for the phase functions of
   /// single scattering: per irradiance of the sun outside the atmosphere.
   struct Light {
-    Vec3d rayleigh, aerosol;  ///< To be multiplied by the phase functions [1/sr].
-    Vec3d rest;               ///< Scattered several times, or reflected by the ground.
+    /// Single scattering, to be multiplied by the phase functions [1/sr].
+    Vec3d rayleigh, aerosol;
+    Vec3d rest;  ///< Scattered several times, or reflected by the ground.
   };
 
   /// @param ground_irradiance what the ground reflects where a line of sight meets it
@@ -61,7 +63,7 @@ class Atmosphere {
   static constexpr int kAltitudes = 8;
   static constexpr int kSunHeights = 24;
 
-  /// Of sunlight to a place; 0 where the ground is in the way.
+  /// Transmittance of sunlight on its way to a point; 0 where the ground is in the way.
   Vec3d transmittance_to_space(double altitude, double height) const;
   /// Radiance of the light of all orders but the first that is scattered at a place, as if it were
   /// isotropic, per irradiance outside.

@@ -12,7 +12,7 @@ namespace freepath {
 struct EmitterPoint {
   Vec3f position;
   Vec3f normal;        ///< Unit; the same side as SurfacePoint::normal of this point.
-  float u = 0, v = 0;  ///< As in SurfacePoint.
+  float u = 0, v = 0;  ///< Coordinates on the surface, as in SurfacePoint.
   float pdf = 0;       ///< [1/sr], seen from the reference; with 0 there is no point.
 };
 

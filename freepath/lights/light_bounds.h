@@ -8,7 +8,7 @@ namespace freepath {
 /// Directions within an angle of an axis.
 struct DirectionCone {
   Vec3f axis{0, 0, 1};  ///< Unit.
-  float cosine = 1;     ///< Of the largest angle from the axis; -1 for all directions.
+  float cosine = 1;     ///< Cosine of the largest angle from the axis; -1 for all directions.
 };
 
 /// The smallest cone around two that contains both, or a larger one.
@@ -17,10 +17,10 @@ DirectionCone unite(const DirectionCone& a, const DirectionCone& b);
 /// One light or several [Conty18].
 struct LightBounds {
   Box3f box;
-  DirectionCone normals;   ///< Of the surfaces, or the axis of a point's cone.
+  DirectionCone normals;   ///< Normals of the surfaces, or the axis of a point's cone.
   float cosine_reach = 0;  ///< Cosine of the angle from a normal within which it shines.
   bool two_sided = false;  ///< It also shines to the other side.
-  double power = 0;        ///< Of any unit.
+  double power = 0;        ///< Power in any unit.
 };
 
 LightBounds unite(const LightBounds& a, const LightBounds& b);

@@ -33,12 +33,12 @@ struct LightImage {
 /// only where (p3 - p0) × (p1 - p0) points to the rectangle: on its inner side.
 using PortalCorners = std::array<Vec3d, 4>;
 
-/// The same radiance from everywhere.
+/// A light of the same radiance from everywhere.
 struct ConstantInfiniteLight {
   std::string name = "infinite light";
   SpectrumId radiance = {};
   double scale = 1;
-  /// Of a surface under one hemisphere of it; in place of what the radiance gives.
+  /// Illuminance of a surface under one hemisphere of it; in place of what the radiance gives.
   std::optional<double> illuminance = {};
   std::optional<PortalCorners> portal = {};
 };
@@ -46,7 +46,7 @@ struct ConstantInfiniteLight {
 /// How an image covers the sphere.
 enum class SphereMapping {
   kOctahedral,  ///< A square of equal areas (octahedral.h), as pbrt-v4's.
-  kLatLong,     ///< As in environment.h, with y up.
+  kLatLong,     ///< Latitude and longitude, as in environment.h, with y up.
 };
 
 /// An image around the scene.
@@ -55,7 +55,8 @@ struct ImageInfiniteLight {
   LightImage image = {};
   SphereMapping mapping = SphereMapping::kOctahedral;
   double scale = 1;
-  /// Of a surface whose normal is the light's z, which is up; in place of what the image gives.
+  /// Illuminance of a surface whose normal is the light's z, which is up; in place of what the
+  /// image gives.
   std::optional<double> illuminance = {};
   Matrix4d light_to_world = {};
   std::optional<PortalCorners> portal = {};
@@ -80,7 +81,7 @@ struct DistantLight {
   std::string name = "distant light";
   SpectrumId radiance = {};  ///< Times scale: the irradiance of a surface that faces the light.
   double scale = 1;
-  std::optional<double> illuminance = {};  ///< In its place.
+  std::optional<double> illuminance = {};  ///< Takes the place of that irradiance.
   Vec3d from{0, 0, 0}, to{0, 0, 1};        ///< The light travels from here to there.
   Matrix4d light_to_world = {};
   /// Way from the light to whatever it shines on [world]: finite where fog fills all space, which
@@ -88,7 +89,7 @@ struct DistantLight {
   float distance = std::numeric_limits<float>::infinity();
 };
 
-/// The same intensity in all directions.
+/// A light of the same intensity in all directions.
 struct PointLight {
   std::string name = "point light";
   SpectrumId intensity = {};
@@ -101,7 +102,7 @@ struct PointLight {
 /// A cone of light with a soft edge.
 struct SpotLight {
   std::string name = "spot light";
-  SpectrumId intensity = {};  ///< On its axis.
+  SpectrumId intensity = {};  ///< Intensity on its axis.
   double scale = 1;
   std::optional<double> power = {};
   Vec3d from{0, 0, 0}, to{0, 0, 1};
@@ -113,7 +114,7 @@ struct SpotLight {
 /// A point with an image of its intensity in all directions.
 struct GoniometricLight {
   std::string name = "goniometric light";
-  SpectrumId intensity = {};             ///< Where the image is 1.
+  SpectrumId intensity = {};             ///< Intensity where the image is 1.
   std::optional<LightImage> image = {};  ///< Octahedral, its y the z of the map; 1 without it.
   double scale = 1;
   std::optional<double> power = {};
@@ -123,8 +124,8 @@ struct GoniometricLight {
 /// A projector of slides at a point; the light's z is the direction, y is up.
 struct ProjectionLight {
   std::string name = "projection light";
-  LightImage image = {};  ///< Of the intensity.
-  double fov = 90;        ///< Of the shorter side of the image [degrees].
+  LightImage image = {};  ///< Image of the intensity.
+  double fov = 90;        ///< Opening angle of the shorter side of the image [degrees].
   double scale = 1;
   std::optional<double> power = {};
   Matrix4d light_to_world = {};
@@ -138,17 +139,17 @@ using LightDescription =
 struct AreaEmission {
   std::string name = "area light";
   SpectrumId radiance = {};
-  /// Of the radiance, in place of the spectrum; (u, v) = (0, 0) is its lower left corner.
+  /// Image of the radiance, in place of the spectrum; (u, v) = (0, 0) is its lower left corner.
   std::optional<LightImage> image = {};
   double scale = 1;
-  std::optional<double> power = {};  ///< Of each part (triangle) of the shape.
+  std::optional<double> power = {};  ///< Power of each part (triangle) of the shape.
   bool two_sided = false;            ///< Else it shines only to the side of the normal.
 };
 
 /// A shape that shines.
 struct AreaLight {
   std::shared_ptr<const EmitterGeometry> geometry;
-  uint32_t emission = 0;   ///< Of SceneLightsDescription::emissions.
+  uint32_t emission = 0;   ///< Index in SceneLightsDescription::emissions.
   bool reversed = false;   ///< It shines to the side where its normal doesn't point.
   bool invisible = false;  ///< No ray hits it, though it shines (an alpha of 0).
 };
@@ -158,7 +159,7 @@ struct SceneLightsDescription {
   std::vector<LightDescription> lights;
   std::vector<AreaEmission> emissions;
   std::vector<AreaLight> area_lights;
-  Vec3d origin{0};  ///< Of the rays [world]; what is drawn and asked is relative to it.
+  Vec3d origin{0};  ///< Origin of the rays [world]; what is drawn and asked is relative to it.
 };
 
 }  // namespace freepath

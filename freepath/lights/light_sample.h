@@ -14,15 +14,15 @@ namespace freepath {
 /// kind of light.
 struct LightSample {
   Vec3f direction{0, 0, 1};  ///< Unit vector from the point to the light [world].
-  /// To the light; infinite for one from outside of the scene.
+  /// Distance to the light; infinite for one from outside of the scene.
   float distance = std::numeric_limits<float>::infinity();
-  /// From this direction, of all lights outside of the scene together; of a light without extent
-  /// the irradiance of a surface that faces it.
+  /// Radiance from this direction, of all lights outside of the scene together; of a light without
+  /// extent the irradiance of a surface that faces it.
   SampledSpectrum radiance;
-  /// With the probability of choosing the light [1/sr]; of a light without extent that probability
-  /// alone. With 0 the draw is to be dropped.
+  /// Density of the direction, times the probability of choosing the light [1/sr]; of a light
+  /// without extent that probability alone. With 0 the draw is to be dropped.
   float pdf = 0;
-  /// Of an area light, which of SceneLightsDescription::area_lights, and of the point
+  /// An area light, as an index in SceneLightsDescription::area_lights, and of the point
   /// SurfacePoint's.
   struct Area {
     uint32_t light = 0, primitive = 0;

@@ -43,8 +43,8 @@ Split split_along(int axis, const Box3f& centres, const std::vector<LightBounds>
   if (!(extent > 0)) return best;
   std::array<Bucket, kBuckets> buckets;
   for (const uint32_t* light = first; light != last; ++light) {
-    const float place = (lights[*light].box.center()[axis] - low) / extent;
-    const int bucket = std::clamp(static_cast<int>(place * kBuckets), 0, kBuckets - 1);
+    const float share = (lights[*light].box.center()[axis] - low) / extent;
+    const int bucket = std::clamp(static_cast<int>(share * kBuckets), 0, kBuckets - 1);
     buckets[bucket].add(lights[*light], 1);
   }
   std::array<Bucket, kBuckets> above;  // all buckets from this one on

@@ -33,7 +33,7 @@ double brightness(const SpectralDistribution& spectrum);
 double light_factor(const SpectralDistribution& spectrum, double scale,
                     const std::optional<double>& target, double flux_of_one,
                     const std::string& name);
-/// The same for lights whose colours are an image's: no spectrum is to be normalised.
+/// The factor of lights whose colours are an image's: no spectrum is to be normalised.
 double light_factor(double scale, const std::optional<double>& target, double flux_of_image,
                     const std::string& name);
 

@@ -64,7 +64,7 @@ class SceneLights {
   struct Distant {
     Vec3f towards;  ///< Direction towards it, unit [world].
     SpectrumId radiance;
-    float scale;     ///< Of that spectrum.
+    float scale;     ///< Factor of that spectrum.
     float share;     ///< Probability of drawing it among lights of this kind.
     float distance;  ///< LightSample::distance.
   };

@@ -58,9 +58,9 @@ ImageEnvironment make_sky(const SunParameters& sun, UpAxis up) {
                                                static_cast<float>(height), UpAxis::kY);
       const double azimuth = std::abs(std::remainder(
           std::atan2(towards.x, -towards.z) - sun.azimuth * kRadians, 2 * std::numbers::pi));
-      const double place = azimuth / std::numbers::pi * (kAzimuths - 1);
-      const int i = std::min(static_cast<int>(place), kAzimuths - 2);
-      const double weight = place - i;
+      const double position = azimuth / std::numbers::pi * (kAzimuths - 1);
+      const int i = std::min(static_cast<int>(position), kAzimuths - 2);
+      const double weight = position - i;
       const double sun_cosine = std::clamp<double>(towards.dot(to_sun), -1, 1);
       const Vec3d radiance = Atmosphere::radiance(lights[i], sun_cosine) * (1 - weight) +
                              Atmosphere::radiance(lights[i + 1], sun_cosine) * weight;

@@ -26,9 +26,9 @@ Rgb sun_outside();
 /// Where the sun stands and what lies between.
 struct SunParameters {
   double elevation = 45;  ///< Above the horizon [degrees], in [-90, 90].
-  double azimuth = 0;     ///< As on a compass, see sky_direction [degrees].
+  double azimuth = 0;     ///< Azimuth as on a compass, see sky_direction [degrees].
   double turbidity = 2;   ///< Haze: 2 is very clear, 3 clear, 6 hazy, 10 almost fog.
-  /// On a surface that faces the sun; by default what direct_sun_irradiance gives.
+  /// Irradiance on a surface that faces the sun; by default what direct_sun_irradiance gives.
   std::optional<Rgb> irradiance = {};
 };
 
@@ -56,7 +56,7 @@ class Sun {
   const Rgb& irradiance() const { return irradiance_; }
   /// Density of `sample` in the disc [1/sr].
   float pdf() const { return 1.0F / solid_angle(); }
-  /// Of the disc, 2π (1 - cosine of the radius) [sr].
+  /// Solid angle of the disc, 2π (1 - cosine of the radius) [sr].
   static constexpr float solid_angle() { return std::numbers::pi_v<float> * largest_distance2(); }
 
   /// Whether a direction points at the disc. Decided by the distance of two points of the sphere:

@@ -47,7 +47,7 @@ class DielectricInterface {
                                         InterfaceEvents events = InterfaceEvents::kAll,
                                         TransportMode mode = TransportMode::kRadiance) const;
 
-  /// For two directions, with the density of sampling only these events. 0 if specular.
+  /// The value for two directions, with the density of sampling only these events. 0 if specular.
   InterfaceValue evaluate(const Vec3f& out, const Vec3f& in,
                           InterfaceEvents events = InterfaceEvents::kAll,
                           TransportMode mode = TransportMode::kRadiance) const;

@@ -23,8 +23,8 @@ inline float fresnel_dielectric(float cosine, float eta) {
   return 0.5F * (parallel * parallel + perpendicular * perpendicular);
 }
 
-/// The same of a conductor with the refractive index eta + i k, relative to outside. An index of 0
-/// reflects all.
+/// The reflectance of a conductor with the refractive index eta + i k, relative to outside. An
+/// index of 0 reflects all.
 inline float fresnel_conductor(float cosine, float eta, float k) {
   if (eta == 0.0F && k == 0.0F) return 1.0F;
   // (a + i b)² = (eta + i k)² - sin² is the square of the index times the refracted cosine. In

@@ -11,7 +11,7 @@ namespace freepath {
 TrowbridgeReitz microfacets_at(const Roughness& roughness, const SurfacePoint& point,
                                const SurfaceContext& context);
 
-/// In [0, 1], as pbrt-v4 clips it.
+/// The reflectance at a point, clipped to [0, 1] as by pbrt-v4.
 SampledSpectrum reflectance_at(const SpectrumInput& reflectance, const SurfacePoint& point,
                                const SurfaceContext& context);
 

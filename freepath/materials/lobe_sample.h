@@ -25,7 +25,7 @@ struct LobeSample {
 /// The value of lobes for two directions.
 struct MaterialValue {
   SampledSpectrum value;  ///< f |cosine| of the direction that follows [1/sr]
-  float pdf = 0;          ///< Of sampling that direction [1/sr].
+  float pdf = 0;          ///< Density of sampling that direction [1/sr].
 };
 
 inline bool same_hemisphere(const Vec3f& a, const Vec3f& b) { return a.z * b.z > 0; }

@@ -17,11 +17,11 @@ namespace {
 /// Uniform in [0, 1), by place, direction and how deep a mix lies within mixes.
 float hashed_uniform(const SurfacePoint& point, const Vec3f& travel, uint32_t depth) {
   const auto bits = [](float value) { return std::bit_cast<uint32_t>(value); };
-  const std::array<uint32_t, 4> place = philox(
+  const std::array<uint32_t, 4> words = philox(
       {bits(point.position.x), bits(point.position.y), bits(point.position.z), point.primitive},
       {point.shape, depth});
   const std::array<uint32_t, 4> mixed =
-      philox({place[0], place[1], bits(travel.x), bits(travel.y)}, {bits(travel.z), place[2]});
+      philox({words[0], words[1], bits(travel.x), bits(travel.y)}, {bits(travel.z), words[2]});
   return uniform_from_bits(mixed[0]);
 }
 

@@ -18,7 +18,7 @@ namespace freepath {
 
 /// A direction that a path goes on in.
 struct MaterialSample {
-  Vec3f direction;  ///< Of travel, unit [world].
+  Vec3f direction;  ///< Direction of travel, unit [world].
   /// f |cosine| / density. With hero_only it is 0 in all channels but the hero's, where
   /// SurfaceContext::hero_factor is in it.
   SampledSpectrum weight;
@@ -47,7 +47,7 @@ class Material {
 
   /// @throws Error if a mix has no material at all, or a coating no walks or interactions
   Material(Kind kind);
-  /// Of one of the kinds.
+  /// Material of one of the kinds.
   template <class T>
   requires std::is_constructible_v<Kind, T> Material(T kind) : Material(Kind(std::move(kind))) {}
 

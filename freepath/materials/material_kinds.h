@@ -49,7 +49,7 @@ struct DiffuseMaterial {
 /// do. Where both parts together are above 1 it is brighter than its light, as in pbrt-v4.
 struct DiffuseTransmissionMaterial {
   SpectrumInput reflectance, transmittance;
-  float scale = 1;  ///< Of both.
+  float scale = 1;  ///< Factor of both.
 
   std::optional<LobeSample> sample(const Vec3f& out, RandomStream& random,
                                    const SurfacePoint& point, const SurfaceContext& context) const;
@@ -121,8 +121,8 @@ struct ThinDielectricMaterial {
 struct Coating {
   SpectrumId eta;
   Roughness roughness;
-  FloatInput thickness = 0.01F;  ///< In mean free paths.
-  SpectrumInput albedo;          ///< Of the medium; where black it only absorbs.
+  FloatInput thickness = 0.01F;  ///< Thickness in mean free paths.
+  SpectrumInput albedo;          ///< Albedo of the medium; where black it only absorbs.
   FloatInput g = 0.0F;           ///< Mean cosine of the medium's phase function.
   int max_depth = 10;            ///< Interactions within the layer.
   int samples = 1;               ///< Walks for each evaluation.
@@ -147,7 +147,7 @@ struct CoatedDiffuseMaterial {
 struct CoatedConductorMaterial {
   Coating coating;
   ConductorIndex index;  ///< Relative to vacuum.
-  Roughness roughness;   ///< Of the conductor.
+  Roughness roughness;   ///< Roughness of the conductor.
 
   std::optional<LobeSample> sample(const Vec3f& out, RandomStream& random,
                                    const SurfacePoint& point, const SurfaceContext& context) const;

@@ -6,9 +6,9 @@
 namespace freepath {
 namespace {
 
-PlaceBox bounds_of(std::span<const PlaceBox> items) {
-  PlaceBox bounds = items[0];
-  for (const PlaceBox& item : items) bounds.extend(item);
+GridBox bounds_of(std::span<const GridBox> items) {
+  GridBox bounds = items[0];
+  for (const GridBox& item : items) bounds.extend(item);
   return bounds;
 }
 
@@ -20,11 +20,11 @@ struct Cut {
 };
 
 /// The gap between the items along an axis that leaves the fewest blocks; sorts them along it.
-Cut best_gap(std::vector<PlaceBox>& items, int axis) {
+Cut best_gap(std::vector<GridBox>& items, int axis) {
   std::sort(items.begin(), items.end(),
-            [axis](const PlaceBox& a, const PlaceBox& b) { return a.begin[axis] < b.begin[axis]; });
+            [axis](const GridBox& a, const GridBox& b) { return a.begin[axis] < b.begin[axis]; });
   std::vector<double> after(items.size());  // blocks of the items from each on
-  PlaceBox bounds = items.back();
+  GridBox bounds = items.back();
   for (std::size_t i = items.size(); i-- > 0;) {
     bounds.extend(items[i]);
     after[i] = BoxTree::blocks_of(bounds);
@@ -41,7 +41,7 @@ Cut best_gap(std::vector<PlaceBox>& items, int axis) {
 }
 
 /// The best gap if it saves half of the blocks, else the middle of the longest side.
-Cut choose_cut(std::vector<PlaceBox>& items, const PlaceBox& bounds) {
+Cut choose_cut(std::vector<GridBox>& items, const GridBox& bounds) {
   Cut best;
   for (int axis = 0; axis < 3; ++axis) {
     const Cut gap = best_gap(items, axis);
@@ -55,7 +55,7 @@ Cut choose_cut(std::vector<PlaceBox>& items, const PlaceBox& bounds) {
 
 }  // namespace
 
-double BoxTree::blocks_of(const PlaceBox& box) {
+double BoxTree::blocks_of(const GridBox& box) {
   double blocks = 1;
   for (int axis = 0; axis < 3; ++axis) {
     // Two voxels on either side, and as many blocks as that can touch.
@@ -66,20 +66,20 @@ double BoxTree::blocks_of(const PlaceBox& box) {
   return blocks;
 }
 
-double BoxTree::filled_blocks(std::span<const PlaceBox> items) {
+double BoxTree::filled_blocks(std::span<const GridBox> items) {
   double filled = 0;
-  for (const PlaceBox& item : items) {
+  for (const GridBox& item : items) {
     const Vec3d blocks = Vec3d(item.size() / kBlock);
     filled += std::max(1.0, blocks.x * blocks.y * blocks.z);
   }
   return filled;
 }
 
-BoxTree::BoxTree(std::vector<PlaceBox> items) {
+BoxTree::BoxTree(std::vector<GridBox> items) {
   if (!items.empty()) add(std::move(items));
 }
 
-int32_t BoxTree::add(std::vector<PlaceBox> items) {
+int32_t BoxTree::add(std::vector<GridBox> items) {
   const auto number = static_cast<int32_t>(nodes_.size());
   Node node;
   node.box = bounds_of(items);
@@ -93,9 +93,9 @@ int32_t BoxTree::add(std::vector<PlaceBox> items) {
   }
   const Cut cut = choose_cut(items, node.box);
   node.axis = cut.axis;
-  std::vector<PlaceBox> lower;
-  std::vector<PlaceBox> upper;
-  for (PlaceBox& item : items) {
+  std::vector<GridBox> lower;
+  std::vector<GridBox> upper;
+  for (GridBox& item : items) {
     if (item.begin[cut.axis] < cut.plane) {
       lower.push_back(item);
       lower.back().end[cut.axis] = std::min(item.end[cut.axis], cut.plane);
@@ -105,7 +105,7 @@ int32_t BoxTree::add(std::vector<PlaceBox> items) {
       upper.back().begin[cut.axis] = std::max(item.begin[cut.axis], cut.plane);
     }
   }
-  std::vector<PlaceBox>().swap(items);
+  std::vector<GridBox>().swap(items);
   node.halves[0] = add(std::move(lower));
   node.halves[1] = add(std::move(upper));
   keep();

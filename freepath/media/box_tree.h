@@ -13,19 +13,19 @@
 
 namespace freepath {
 
-/// Half-open box of places of a grid of voxels [voxels].
-struct PlaceBox {
+/// Half-open box of positions of a grid of voxels [voxels].
+struct GridBox {
   Vec3i begin{0};
   Vec3i end{0};
 
   Vec3i size() const { return end - begin; }
-  void extend(const PlaceBox& other) {
+  void extend(const GridBox& other) {
     for (int axis = 0; axis < 3; ++axis) {
       begin[axis] = std::min(begin[axis], other.begin[axis]);
       end[axis] = std::max(end[axis], other.end[axis]);
     }
   }
-  bool operator==(const PlaceBox&) const = default;
+  bool operator==(const GridBox&) const = default;
 };
 
 /// Disjoint boxes, the leaves, which together hold a set of items, and the tree of halves that a
@@ -42,23 +42,23 @@ class BoxTree {
   static constexpr double kFullLeaf = 32;
 
   struct Leaf {
-    PlaceBox box;           ///< The items in it, to their bounds or to where the box is cut.
+    GridBox box;            ///< The items in it, to their bounds or to where the box is cut.
     std::size_t items = 0;  ///< How many they are, cut ones counted in each leaf.
   };
 
   BoxTree() = default;
-  explicit BoxTree(std::vector<PlaceBox> items);
+  explicit BoxTree(std::vector<GridBox> items);
 
   std::span<const Leaf> leaves() const { return leaves_; }
 
   /// Blocks of the dense index that a box takes, which reaches beyond it by two voxels.
-  static double blocks_of(const PlaceBox& box);
+  static double blocks_of(const GridBox& box);
   /// Blocks that items fill, at least one each.
-  static double filled_blocks(std::span<const PlaceBox> items);
+  static double filled_blocks(std::span<const GridBox> items);
 
   /// Calls f(leaf, t) for the leaves that a ray meets, in the order in which it does; it is at or
   /// in the leaf at t. A leaf that it misses by a trifle may be among them.
-  /// @param origin,direction in places, per unit of t; finite
+  /// @param origin,direction in positions, per unit of t; finite
   template <class Function>
   void for_each_on_ray(const Vec3d& origin, const Vec3d& direction, double t_max,
                        Function f) const {
@@ -73,13 +73,13 @@ class BoxTree {
 
  private:
   struct Node {
-    PlaceBox box;
+    GridBox box;
     int axis = 0;                ///< What the halves lie apart along.
     int32_t halves[2] = {0, 0};  ///< Nodes, the lower half first.
-    int32_t leaf = -1;           ///< In place of the halves, if it is one.
+    int32_t leaf = -1;           ///< Number of the leaf, if it is one; then it has no halves.
   };
 
-  int32_t add(std::vector<PlaceBox> items);
+  int32_t add(std::vector<GridBox> items);
 
   template <class Function>
   void descend(int32_t number, const Vec3d& origin, const Vec3d& inverse, double t_max,

@@ -25,18 +25,18 @@ bool comes_before(const Vec3i& a, const Vec3i& b) {
   return a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-bool is_listed_before(const PlacedBrick& listed, const Vec3i& place) {
-  return comes_before(listed.place, place);
+bool is_listed_before(const PlacedBrick& listed, const Vec3i& coord) {
+  return comes_before(listed.coord, coord);
 }
 
 }  // namespace
 
-uint32_t BrickMap::brick_at(const Vec3i& place) const {
+uint32_t BrickMap::brick_at(const Vec3i& coord) const {
   if (is_sparse_) {
-    const auto found = std::lower_bound(listed_.begin(), listed_.end(), place, is_listed_before);
-    return found != listed_.end() && found->place == place ? found->brick : 0;
+    const auto found = std::lower_bound(listed_.begin(), listed_.end(), coord, is_listed_before);
+    return found != listed_.end() && found->coord == coord ? found->brick : 0;
   }
-  const Vec3i entry = place - origin_ / kBrickSize;
+  const Vec3i entry = coord - origin_ / kBrickSize;
   for (int axis = 0; axis < 3; ++axis) {
     if (entry[axis] < 0 || entry[axis] >= brick_counts_[axis]) return 0;
   }
@@ -63,7 +63,7 @@ BrickWindow BrickMap::window(const Vec3i& begin, const Vec3i& end) const {
           std::lower_bound(listed_.begin(), listed_.end(), Vec3i(x, y, begin.z), is_listed_before);
       const Vec3i past(x, y, end.z);
       for (; listed != listed_.end() && is_listed_before(*listed, past); ++listed) {
-        row[listed->place.z - begin.z] = listed->brick;
+        row[listed->coord.z - begin.z] = listed->brick;
       }
     }
   }
@@ -105,10 +105,10 @@ void BrickMap::widen_index(const Vec3i& origin, const Vec3i& brick_counts) {
 }
 
 float BrickMap::value(const Vec3i& voxel) const {
-  const Vec3i place(brick_of(voxel.x), brick_of(voxel.y), brick_of(voxel.z));
+  const Vec3i coord(brick_of(voxel.x), brick_of(voxel.y), brick_of(voxel.z));
   return voxels_.empty()
              ? 0.0F
-             : voxels_[std::size_t{brick_at(place)} * kBrickVoxels + voxel_offset(voxel)];
+             : voxels_[std::size_t{brick_at(coord)} * kBrickVoxels + voxel_offset(voxel)];
 }
 
 double BrickMap::interpolate(const Vec3d& point) const {
@@ -133,7 +133,7 @@ std::size_t BrickMap::memory_bytes() const {
 }
 
 BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max,
-                                 std::size_t brick_capacity, std::size_t places) {
+                                 std::size_t brick_capacity, std::size_t coord_count) {
   map_.active_min_ = active_min;
   map_.active_max_ = active_max;
   if (map_.empty()) return;
@@ -151,41 +151,43 @@ BrickMapBuilder::BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_ma
     map_.brick_counts_[axis] = last - first + 1;
     entries *= map_.brick_counts_[axis];
   }
-  map_.is_sparse_ = places != kUnknown && !is_worth_an_index(entries, static_cast<double>(places));
-  if (map_.is_sparse_ ? places > kMaxListed : entries > kMaxIndexEntries) {
+  map_.is_sparse_ =
+      coord_count != kUnknown && !is_worth_an_index(entries, static_cast<double>(coord_count));
+  if (map_.is_sparse_ ? coord_count > kMaxListed : entries > kMaxIndexEntries) {
     fail(
         "the active voxels span {} x {} x {}, too many for {}: crop the grid or split it into "
         "several",
         active_max.x - active_min.x + 1, active_max.y - active_min.y + 1,
         active_max.z - active_min.z + 1,
-        map_.is_sparse_ ? fmt::format("an index of {} bricks", places) : "a dense index of bricks");
+        map_.is_sparse_ ? fmt::format("an index of {} bricks", coord_count)
+                        : "a dense index of bricks");
   }
   if (!map_.is_sparse_) map_.index_.resize(static_cast<std::size_t>(entries));
   map_.voxels_.reserve((brick_capacity + 1) * BrickMap::kBrickVoxels);
   new_brick();  // brick 0, the empty one
 }
 
-std::size_t BrickMapBuilder::PlaceHash::operator()(const Vec3i& place) const {
+std::size_t BrickMapBuilder::CoordHash::operator()(const Vec3i& coord) const {
   uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    hash = (hash ^ static_cast<uint32_t>(place[axis])) * 0x9E3779B97F4A7C15U;
+    hash = (hash ^ static_cast<uint32_t>(coord[axis])) * 0x9E3779B97F4A7C15U;
     hash ^= hash >> 32;
   }
   return hash;
 }
 
 uint32_t& BrickMapBuilder::entry(const Vec3i& brick) {
-  Vec3i place;
+  Vec3i coord;
   for (int axis = 0; axis < 3; ++axis) {
-    place[axis] = brick[axis] - map_.origin_[axis] / BrickMap::kBrickSize;
-    if (place[axis] < 0 || place[axis] >= map_.brick_counts_[axis]) {
+    coord[axis] = brick[axis] - map_.origin_[axis] / BrickMap::kBrickSize;
+    if (coord[axis] < 0 || coord[axis] >= map_.brick_counts_[axis]) {
       fail("brick ({}, {}, {}) lies outside the bounds given for the brick map", brick.x, brick.y,
            brick.z);
     }
   }
   if (map_.is_sparse_) return listed_[brick];
   const Vec3i& counts = map_.brick_counts_;
-  return map_.index_[(static_cast<std::size_t>(place.x) * counts.y + place.y) * counts.z + place.z];
+  return map_.index_[(static_cast<std::size_t>(coord.x) * counts.y + coord.y) * counts.z + coord.z];
 }
 
 void BrickMapBuilder::check_brick_count(std::size_t count) const {
@@ -204,10 +206,10 @@ uint32_t BrickMapBuilder::new_brick() {
 }
 
 std::span<float, BrickMap::kBrickVoxels> BrickMapBuilder::add_brick(const Vec3i& brick) {
-  uint32_t& place = entry(brick);
-  if (shared_[place]) place = new_brick();
+  uint32_t& slot = entry(brick);
+  if (shared_[slot]) slot = new_brick();
   return std::span<float, BrickMap::kBrickVoxels>(
-      map_.voxels_.data() + std::size_t{place} * BrickMap::kBrickVoxels, BrickMap::kBrickVoxels);
+      map_.voxels_.data() + std::size_t{slot} * BrickMap::kBrickVoxels, BrickMap::kBrickVoxels);
 }
 
 std::span<float> BrickMapBuilder::add_bricks(std::span<const Vec3i> bricks) {
@@ -267,11 +269,11 @@ void BrickMapBuilder::set_active_bounds(const Vec3i& active_min, const Vec3i& ac
 
 BrickMap BrickMapBuilder::finish() && {
   map_.listed_.reserve(listed_.size());
-  for (const auto& [place, brick] : listed_) {
-    if (brick != 0) map_.listed_.push_back({place, brick});
+  for (const auto& [coord, brick] : listed_) {
+    if (brick != 0) map_.listed_.push_back({coord, brick});
   }
   std::sort(map_.listed_.begin(), map_.listed_.end(),
-            [](const auto& a, const auto& b) { return comes_before(a.place, b.place); });
+            [](const auto& a, const auto& b) { return comes_before(a.coord, b.coord); });
   return std::move(map_);
 }
 

@@ -15,14 +15,14 @@ namespace freepath {
 
 /// A brick at its place in the grid.
 struct PlacedBrick {
-  Vec3i place;         ///< Coordinates of voxels divided by 8 (floor) [index].
+  Vec3i coord;         ///< Coordinates of voxels divided by 8 (floor) [index].
   uint32_t brick = 0;  ///< Its number.
 };
 
 /// A dense index of bricks over a box of a map, its own or a part cut out of it.
 struct BrickWindow {
   Vec3i origin{0};                  ///< First voxel, a multiple of 8 [index].
-  Vec3i brick_counts{0};            ///< Along each axis.
+  Vec3i brick_counts{0};            ///< Number of bricks along each axis.
   const uint32_t* index = nullptr;  ///< Brick of each entry, x slowest, as BrickMap::index().
   std::shared_ptr<const std::vector<uint32_t>> cut_out{};  ///< Holds it, where it is no map's own.
 
@@ -68,8 +68,8 @@ class BrickMap {
   template <class Function>
   void for_each_brick(Function f) const;
   /// The number of a brick; 0, the empty one, outside.
-  /// @param place coordinates of voxels divided by 8 (floor) [index]
-  uint32_t brick_at(const Vec3i& place) const;
+  /// @param coord coordinates of voxels divided by 8 (floor) [index]
+  uint32_t brick_at(const Vec3i& coord) const;
   /// A dense index over the bricks of the half-open box [begin, end) of places; its time and memory
   /// are those of the box.
   /// @throws Error for a box of more bricks than an index may have
@@ -140,11 +140,11 @@ class BrickMapBuilder {
   /// @param active_min,active_max inclusive bounds of the active voxels, or of the bricks that hold
   ///   them [index]
   /// @param brick_capacity how many distinct bricks to reserve; more may be added
-  /// @param places how many bricks will be set, those of one constant value each counted: few of
-  ///   them in large bounds get a list for an index
+  /// @param coord_count how many bricks will be set, those of one constant value each counted: few
+  ///   of them in large bounds get a list for an index
   /// @throws Error if the bounds and the bricks in them need too large an index
   BrickMapBuilder(const Vec3i& active_min, const Vec3i& active_max, std::size_t brick_capacity,
-                  std::size_t places = kUnknown);
+                  std::size_t coord_count = kUnknown);
 
   /// The 512 voxels of a new brick, zero at first, to be written (offset 64x + 8y + z). The span is
   /// valid until the next call.
@@ -165,8 +165,8 @@ class BrickMapBuilder {
   BrickMap finish() &&;
 
  private:
-  struct PlaceHash {
-    std::size_t operator()(const Vec3i& place) const;
+  struct CoordHash {
+    std::size_t operator()(const Vec3i& coord) const;
   };
 
   uint32_t& entry(const Vec3i& brick);
@@ -174,7 +174,7 @@ class BrickMapBuilder {
   void check_brick_count(std::size_t count) const;
 
   BrickMap map_;
-  std::unordered_map<Vec3i, uint32_t, PlaceHash> listed_;  // place → brick, of an index that is one
+  std::unordered_map<Vec3i, uint32_t, CoordHash> listed_;  // coord → brick, of an index that is one
   std::unordered_map<uint32_t, uint32_t> constants_;       // bits of the value → brick
   std::vector<bool> shared_;                               // bricks that several entries may name
 };

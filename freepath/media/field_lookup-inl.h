@@ -23,7 +23,7 @@ class FieldLookup {
   /// The voxel that is read of a component, one row a lane.
   struct Tap {
     HWY_ALIGN_MAX int32_t voxel[3][kLanes];   ///< Base voxel, from the first of the index.
-    HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Place between it and the next (trilinear).
+    HWY_ALIGN_MAX float fraction[3][kLanes];  ///< Position between it and the next (trilinear).
     HWY_ALIGN_MAX int32_t entry[kLanes];      ///< Index entry of its brick.
   };
 
@@ -62,9 +62,9 @@ class FieldLookup {
     random[2] = hn::Or(hn::ShiftLeft<10>(hn::And(bits0, hn::Set(kUint, 0x7FF))),
                        hn::And(bits1, hn::Set(kUint, 0x3FF)));
     if (!medium_.aligned) return aim_at_each(point, lanes, random, state);
-    VecF place[3];
-    for (int axis = 0; axis < 3; ++axis) place[axis] = hn::Mul(point[axis], set(size_));
-    aim_at_voxel(0, place, lanes, random, state.taps[0]);
+    VecF position[3];
+    for (int axis = 0; axis < 3; ++axis) position[axis] = hn::Mul(point[axis], set(size_));
+    aim_at_voxel(0, position, lanes, random, state.taps[0]);
   }
 
   /// Asks for the index entries of the voxels aimed at.
@@ -147,29 +147,29 @@ class FieldLookup {
                                 State& state) const {
     for (const int k : medium_.matter()) {
       const AffineMap& map = medium_.components[k].walk_to_voxels;
-      VecF place[3];
+      VecF position[3];
       for (int axis = 0; axis < 3; ++axis) {
-        place[axis] = set(map.offset[axis]);
+        position[axis] = set(map.offset[axis]);
         for (int from = 0; from < 3; ++from) {
-          place[axis] = mul_add(point[from], set(map.linear[from][axis]), place[axis]);
+          position[axis] = mul_add(point[from], set(map.linear[from][axis]), position[axis]);
         }
       }
-      aim_at_voxel(k, place, lanes, random, state.taps[k]);
+      aim_at_voxel(k, position, lanes, random, state.taps[k]);
     }
   }
 
-  /// Aims at a place in the voxels of component k. Beyond the voxels it is held at the border of
+  /// Aims at a position in the voxels of component k. Beyond the voxels it is held at the border of
   /// the index, which is 0.
   HWY_INLINE void aim_at_voxel(int k, const VecF (&point)[3], MaskF lanes, const VecU (&random)[3],
                                Tap& tap) const {
     VecI voxel[3];
     for (int axis = 0; axis < 3; ++axis) {
-      VecF place = point[axis];
-      if (medium_.interpolation != Interpolation::kNearest) place = hn::Sub(place, set(0.5F));
-      place = hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last_voxel_[k][axis]));
-      const VecF base = hn::Floor(place);
+      VecF position = point[axis];
+      if (medium_.interpolation != Interpolation::kNearest) position = hn::Sub(position, set(0.5F));
+      position = hn::Min(hn::Max(position, hn::Zero(kFloat)), set(last_voxel_[k][axis]));
+      const VecF base = hn::Floor(position);
       voxel[axis] = small_to_int(base);
-      const VecF fraction = hn::Sub(place, base);
+      const VecF fraction = hn::Sub(position, base);
       if (medium_.interpolation == Interpolation::kStochastic) {
         // 21 bits an axis, in the middle of their interval so that rounding favours no side.
         const VecF u =
@@ -189,9 +189,9 @@ class FieldLookup {
   /// Keeps the points where a density function is to be evaluated.
   HWY_INLINE void aim_at_function(const VecF (&point)[3], MaskF lanes, State& state) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const VecF place = mul_add(hn::IfThenElseZero(lanes, point[axis]),
-                                 set(medium_.cell_edge[axis]), set(medium_.cell_origin[axis]));
-      hn::Store(place, kFloat, state.taps[0].fraction[axis]);
+      const VecF position = mul_add(hn::IfThenElseZero(lanes, point[axis]),
+                                    set(medium_.cell_edge[axis]), set(medium_.cell_origin[axis]));
+      hn::Store(position, kFloat, state.taps[0].fraction[axis]);
     }
   }
 

@@ -82,14 +82,14 @@ void mark_empty_cells(const SuperVoxels& cells, float* records) {
 }
 
 /// World → walk space, given world → place.
-AffineMap scaled_map(const Matrix4d& world_to_place, const Vec3i& first, int cell_size,
+AffineMap scaled_map(const Matrix4d& world_to_grid, const Vec3i& first, int cell_size,
                      const Vec3d& origin) {
   const double scale = 1.0 / cell_size;
   AffineMap map;
   for (int to = 0; to < 3; ++to) {
-    double offset = (world_to_place[3][to] - first[to]) * scale;
+    double offset = (world_to_grid[3][to] - first[to]) * scale;
     for (int from = 0; from < 3; ++from) {
-      const double factor = world_to_place[from][to] * scale;
+      const double factor = world_to_grid[from][to] * scale;
       offset += origin[from] * factor;
       map.linear[from][to] = static_cast<float>(factor);
     }
@@ -99,13 +99,13 @@ AffineMap scaled_map(const Matrix4d& world_to_place, const Vec3i& first, int cel
 }
 
 /// Walk space → place, given that of the voxels that its cells are made of.
-AffineMap voxels_from_cells(const Matrix4d& places, int cell_size) {
+AffineMap voxels_from_cells(const Matrix4d& to_voxels, int cell_size) {
   AffineMap map;
   for (int to = 0; to < 3; ++to) {
     for (int from = 0; from < 3; ++from) {
-      map.linear[from][to] = static_cast<float>(places[from][to] * cell_size);
+      map.linear[from][to] = static_cast<float>(to_voxels[from][to] * cell_size);
     }
-    map.offset[to] = static_cast<float>(places[3][to]);
+    map.offset[to] = static_cast<float>(to_voxels[3][to]);
   }
   return map;
 }
@@ -126,7 +126,7 @@ Medium::Medium(std::vector<Component> components, int super_voxel,
   } else {
     build_from_voxels(super_voxel);
   }
-  set_world_to_place(world_to_index);
+  set_world_to_grid(world_to_index);
 }
 
 std::vector<const Field*> Medium::fields() const {
@@ -135,21 +135,21 @@ std::vector<const Field*> Medium::fields() const {
   return fields;
 }
 
-void Medium::set_world_to_place(const std::optional<Matrix4d>& world_to_index) {
+void Medium::set_world_to_grid(const std::optional<Matrix4d>& world_to_index) {
   if (world_to_index && !aligned()) {
     fail("fields that differ in transform or bounds can't be given one map from the world");
   }
   if (world_to_index) {
-    world_to_place_ = *world_to_index;
+    world_to_grid_ = *world_to_index;
   } else {
     const double determinant = space_.index_to_world.determinant();
     if (!std::isfinite(determinant) || determinant == 0) {
       fail("grid '{}': its transform has no inverse", components_[0].density->name);
     }
-    world_to_place_ = space_.index_to_world.inverse();
+    world_to_grid_ = space_.index_to_world.inverse();
   }
   for (int to = 0; to < 3; ++to) {
-    world_to_place_[3][to] = world_to_place_[3][to] - space_.origin[to] + 0.5;
+    world_to_grid_[3][to] = world_to_grid_[3][to] - space_.origin[to] + 0.5;
   }
 }
 
@@ -265,11 +265,11 @@ std::size_t Medium::memory_bytes() const {
 }
 
 AffineMap Medium::world_to_walk(const Vec3d& origin) const {
-  return scaled_map(world_to_place_, Vec3i(0), super_voxels().cell_size, origin);
+  return scaled_map(world_to_grid_, Vec3i(0), super_voxels().cell_size, origin);
 }
 
 AffineMap Medium::world_to_walk(const WalkPart& part, const Vec3d& origin) const {
-  return scaled_map(world_to_place_, part.first, part.cells.cell_size, origin);
+  return scaled_map(world_to_grid_, part.first, part.cells.cell_size, origin);
 }
 
 Vec3d Medium::middle_of(const WalkPart& part) const {
@@ -287,46 +287,46 @@ AffineMap Medium::walk_to_component(const WalkPart& part, std::size_t component)
       part.cells.cell_size);
 }
 
-/// Along rows: place in the grid → index of the grid → world → place in the field.
-Matrix4d Medium::place_to_field(const Field& field) const {
+/// Along rows: position in the grid → index of the grid → world → position in the field.
+Matrix4d Medium::grid_to_field(const Field& field) const {
   const double determinant = field.index_to_world.determinant();
   if (!std::isfinite(determinant) || determinant == 0) {
     fail("grid '{}': its transform has no inverse", field.name);
   }
-  Matrix4d place_to_index;
-  place_to_index.setTranslation(Vec3d(space_.origin) - Vec3d(0.5));
-  Matrix4d places = place_to_index * space_.index_to_world * field.index_to_world.inverse();
-  for (int to = 0; to < 3; ++to) places[3][to] = places[3][to] - field.voxels.origin()[to] + 0.5;
-  return places;
+  Matrix4d grid_to_index;
+  grid_to_index.setTranslation(Vec3d(space_.origin) - Vec3d(0.5));
+  Matrix4d result = grid_to_index * space_.index_to_world * field.index_to_world.inverse();
+  for (int to = 0; to < 3; ++to) result[3][to] = result[3][to] - field.voxels.origin()[to] + 0.5;
+  return result;
 }
 
 AffineMap Medium::walk_to_field(const Field& field) const {
-  return voxels_from_cells(place_to_field(field), super_voxels().cell_size);
+  return voxels_from_cells(grid_to_field(field), super_voxels().cell_size);
 }
 
 AffineMap Medium::walk_to_field(const WalkPart& part, const Field& field,
                                 BrickWindow& window) const {
-  const Matrix4d places = place_to_field(field);
-  window = window_of(field.voxels, part.box, places);
-  return voxels_from_cells(to_window(part, places, field.voxels, window), part.cells.cell_size);
+  const Matrix4d to_field = grid_to_field(field);
+  window = window_of(field.voxels, part.box, to_field);
+  return voxels_from_cells(to_window(part, to_field, field.voxels, window), part.cells.cell_size);
 }
 
 Box3f Medium::walk_bounds(Interpolation interpolation) const {
   if (components_[0].density->function) return {Vec3f(0), Vec3f(super_voxels().counts)};
   const double reach = std::min(reach_, interpolation == Interpolation::kNearest ? 0.5 : 1.0);
   const double scale = 1.0 / super_voxels().cell_size;
-  const Box3d places = space_.bounds(fields(), reach);
-  return {Vec3f(places.min * scale), Vec3f(places.max * scale)};
+  const Box3d bounds = space_.bounds(fields(), reach);
+  return {Vec3f(bounds.min * scale), Vec3f(bounds.max * scale)};
 }
 
 Box3f Medium::walk_bounds(const WalkPart& part, Interpolation interpolation) const {
   if (parts().size() == 1 && part_tree().leaves().empty()) return walk_bounds(interpolation);
   const double reach = std::min(reach_, interpolation == Interpolation::kNearest ? 0.5 : 1.0);
-  const Box3d places = space_.bounds(fields(), reach);
+  const Box3d bounds = space_.bounds(fields(), reach);
   Box3f box;
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = std::max(places.min[axis], double(part.box.begin[axis]));
-    const double high = std::min(places.max[axis], double(part.box.end[axis]));
+    const double low = std::max(bounds.min[axis], double(part.box.begin[axis]));
+    const double high = std::min(bounds.max[axis], double(part.box.end[axis]));
     box.min[axis] = static_cast<float>((low - part.first[axis]) / part.cells.cell_size);
     box.max[axis] = static_cast<float>((high - part.first[axis]) / part.cells.cell_size);
   }

@@ -65,16 +65,16 @@ class Medium {
   explicit Medium(std::vector<Component> components, int super_voxel = 0,
                   const std::optional<Matrix4d>& world_to_index = {});
 
-  /// The same medium with other bounds: maxima times `scale`, minima divided by it. Above 1 they
-  /// are looser; below 1 they are no bounds, which methods that need them are biased by. To study
-  /// what bounds cost, and to test what notices wrong ones.
+  /// A copy of the medium with other bounds: maxima times `scale`, minima divided by it. Above 1
+  /// they are looser; below 1 they are no bounds, which methods that need them are biased by. To
+  /// study what bounds cost, and to test what notices wrong ones.
   Medium with_scaled_bounds(float scale) const;
 
-  /// The same medium, cut off at the faces of its outermost active voxels, where the filter's reach
-  /// would let it fade over another half of a voxel.
+  /// A copy of the medium, cut off at the faces of its outermost active voxels, where the filter's
+  /// reach would let it fade over another half of a voxel.
   Medium clipped_to_voxels() const;
-  /// The same, cut off at the middles of its outermost active voxels: what lies inside of them is
-  /// not faded.
+  /// A copy of the medium, cut off at the middles of its outermost active voxels: what lies inside
+  /// of them is not faded.
   Medium clipped_to_middles() const;
 
   const std::vector<Component>& components() const { return components_; }
@@ -105,18 +105,18 @@ class Medium {
   ///   medium, single precision holds them however far from the world's origin that is
   AffineMap world_to_walk(const Vec3d& origin = Vec3d(0)) const;
   AffineMap world_to_walk(const WalkPart& part, const Vec3d& origin) const;
-  /// World space → place in the grid of voxels that the parts' boxes are in.
-  const Matrix4d& world_to_place() const { return world_to_place_; }
+  /// World space → position in the grid of voxels that the parts' boxes are in.
+  const Matrix4d& world_to_grid() const { return world_to_grid_; }
   /// The point of the world in the middle of a part.
   Vec3d middle_of(const WalkPart& part) const;
-  /// Walk space → place in a component's voxels, counted from the first of its index; the centre of
-  /// voxel i is at i + 1/2.
+  /// Walk space → position in a component's voxels, counted from the first of its index; the centre
+  /// of voxel i is at i + 1/2.
   AffineMap walk_to_component(std::size_t component) const;
   AffineMap walk_to_component(const WalkPart& part, std::size_t component) const;
-  /// Walk space → place in the voxels of another field, which may stand anyhow in the world.
+  /// Walk space → position in the voxels of another field, which may stand anyhow in the world.
   /// @throws Error if the field's transform has no inverse
   AffineMap walk_to_field(const Field& field) const;
-  /// The same, of a part.
+  /// Walk space of a part → position in the voxels of another field.
   /// @param window what of the field the part reads: set to that
   AffineMap walk_to_field(const WalkPart& part, const Field& field, BrickWindow& window) const;
 
@@ -142,16 +142,16 @@ class Medium {
   std::vector<const Field*> fields() const;
   void build_from_voxels(int super_voxel);
   void build_from_functions();
-  void set_world_to_place(const std::optional<Matrix4d>& world_to_index);
+  void set_world_to_grid(const std::optional<Matrix4d>& world_to_index);
   void set_parts(std::vector<WalkPart> parts);
-  Matrix4d place_to_field(const Field& field) const;
+  Matrix4d grid_to_field(const Field& field) const;
 
   std::vector<Component> components_;
   std::shared_ptr<const std::vector<WalkPart>> parts_;
   std::shared_ptr<const BoxTree> part_tree_ = std::make_shared<const BoxTree>();
   WalkCells walk_cells_;
   WalkSpace space_;
-  Matrix4d world_to_place_;
+  Matrix4d world_to_grid_;
   double reach_ = 1;  // beyond the middles of the outermost voxels, where filters reach so far
 };
 

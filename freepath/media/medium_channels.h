@@ -11,7 +11,8 @@
 
 namespace freepath {
 
-/// Of one component. A path of fewer channels uses the first ones.
+/// Coefficients of one component in the channels of a path. A path of fewer channels uses the first
+/// ones.
 struct ComponentChannels {
   std::array<float, kMaxChannels> sigma_a{};   ///< [1/m per density]
   std::array<float, kMaxChannels> sigma_s{};   ///< [1/m per density]
@@ -19,7 +20,7 @@ struct ComponentChannels {
   std::array<RadianceField, kMaxChannels> radiance;
 };
 
-/// Of all components of a medium.
+/// Coefficients of all components of a medium in the channels of a path.
 struct MediumChannels {
   int count = 1;  ///< Channels: 1 to kMaxChannels.
   std::vector<ComponentChannels> components;
@@ -31,7 +32,7 @@ struct MediumChannels {
   bool emits() const;
   /// Whether emitted radiance varies from place to place.
   bool has_radiance_fields() const;
-  /// One of the channels alone.
+  /// The coefficients in one of the channels alone.
   MediumChannels only(int channel) const;
 };
 

@@ -29,13 +29,13 @@ struct RadianceView {
 struct ComponentView {
   const uint32_t* index = nullptr;            ///< Brick of each index entry.
   const float* voxels = nullptr;              ///< Voxels of the bricks.
-  const DensityFunction* function = nullptr;  ///< In place of both, if set.
-  std::array<int32_t, 3> brick_counts{};      ///< Of the index.
-  AffineMap walk_to_voxels;  ///< Walk space → place in the voxels; used unless aligned.
+  const DensityFunction* function = nullptr;  ///< Density in place of both, if set.
+  std::array<int32_t, 3> brick_counts{};      ///< Size of the index along each axis.
+  AffineMap walk_to_voxels;  ///< Walk space → position in the voxels; used unless aligned.
   std::array<float, kMaxChannels> sigma_a{};
   std::array<float, kMaxChannels> sigma_s{};
   std::array<float, kMaxChannels> emission{};        ///< sigma_a · L_e, where that does not vary.
-  const RadianceView* radiance = nullptr;            ///< Of each channel, where it does;
+  const RadianceView* radiance = nullptr;            ///< Emission of each channel, where it does;
   std::array<float, kMaxChannels> radiance_scale{};  ///< and what it is multiplied by, sigma_a too.
 };
 
@@ -52,11 +52,12 @@ struct MediumView {
   std::array<float, 3> cell_origin{};  ///< Corner and edges of the first cell [world], where
   std::array<float, 3> cell_edge{};    ///< densities are computed.
   bool aligned = true;                 ///< Medium::aligned(): one voxel serves all components.
-  int component_count = 0;  ///< Of the medium, as many as a record of `cells` has numbers.
+  /// Number of the medium's components; a record of `cells` has as many numbers.
+  int component_count = 0;
   /// Components that scatter or absorb in one of the channels, at least one: all others are of no
   /// matter to a walk, and are not looked up.
   std::span<const int32_t> matter() const { return {matter_.data(), matter_count_}; }
-  int channels = 1;  ///< Of the paths; a walk of more repeats them.
+  int channels = 1;  ///< Number of the paths' channels; a walk of more repeats them.
   std::array<ComponentView, Medium::kMaxComponents> components{};
   /// What the components' radiance points at; null where emission does not vary.
   std::shared_ptr<const std::vector<RadianceView>> radiance_views{};

@@ -35,8 +35,8 @@ struct PageAllocator {
   }
 
   template <class U, class... Args>
-  void construct(U* place, Args&&... args) {
-    if constexpr (sizeof...(Args) != 0) std::construct_at(place, std::forward<Args>(args)...);
+  void construct(U* item, Args&&... args) {
+    if constexpr (sizeof...(Args) != 0) std::construct_at(item, std::forward<Args>(args)...);
   }
 
   template <class U>

@@ -22,14 +22,14 @@ HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[
   VecF weight[2][3];
   const int brick_steps[3] = {view.brick_counts[1] * view.brick_counts[2], view.brick_counts[2], 1};
   for (int axis = 0; axis < 3; ++axis) {
-    VecF place = set(view.walk_to_voxels.offset[axis] - 0.5F);
+    VecF position = set(view.walk_to_voxels.offset[axis] - 0.5F);
     for (int from = 0; from < 3; ++from) {
-      place = mul_add(point[from], set(view.walk_to_voxels.linear[from][axis]), place);
+      position = mul_add(point[from], set(view.walk_to_voxels.linear[from][axis]), position);
     }
     const float last = static_cast<float>(view.brick_counts[axis] * BrickMap::kBrickSize - 2);
     // Maximum and minimum also keep idle lanes inside.
-    place = hn::IfThenElseZero(lanes, hn::Min(hn::Max(place, hn::Zero(kFloat)), set(last)));
-    const VecF base = hn::Floor(place);
+    position = hn::IfThenElseZero(lanes, hn::Min(hn::Max(position, hn::Zero(kFloat)), set(last)));
+    const VecF base = hn::Floor(position);
     const VecI first = small_to_int(base);
     for (int next : {0, 1}) {
       const VecI voxel = hn::Add(first, hn::Set(kInt, next));
@@ -40,7 +40,7 @@ HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[
                            : axis == 1 ? hn::ShiftLeft<3>(inside)
                                        : inside;
     }
-    weight[1][axis] = hn::Sub(place, base);
+    weight[1][axis] = hn::Sub(position, base);
     weight[0][axis] = hn::Sub(set(1.0F), weight[1][axis]);
   }
   const auto* index = reinterpret_cast<const int32_t*>(view.index);
@@ -61,14 +61,14 @@ HWY_INLINE VecF interpolate_field(const RadianceView& view, const VecF (&point)[
 /// The radiance that a field's value stands for.
 HWY_INLINE VecF radiance_of(const RadianceView& view, VecF value) {
   if (view.table == nullptr) return value;
-  const VecF place = hn::Min(
+  const VecF position = hn::Min(
       hn::Max(hn::Mul(hn::Sub(value, set(view.first)), set(view.per_step)), hn::Zero(kFloat)),
       set(view.last));
-  const VecF base = hn::Floor(hn::Min(place, set(view.last - 1)));
+  const VecF base = hn::Floor(hn::Min(position, set(view.last - 1)));
   const VecI number = hn::ConvertTo(kInt, base);
   const VecF before = hn::GatherIndex(kFloat, view.table, number);
   const VecF after = hn::GatherIndex(kFloat, view.table, hn::Add(number, hn::Set(kInt, 1)));
-  return mul_add(hn::Sub(place, base), hn::Sub(after, before), before);
+  return mul_add(hn::Sub(position, base), hn::Sub(after, before), before);
 }
 
 /// Radiances of N channels at points; channels that share a field share the look-up.

@@ -22,7 +22,7 @@ struct SegmentCursor {
   VecF t;             ///< Distance from the origin [world].
   VecF end;           ///< Where the ray leaves the medium or ends [world].
   VecF cell[3];       ///< Super-voxel that holds the point at t; whole numbers.
-  VecI record;        ///< Place of its record in Medium::walk_cells().
+  VecI record;        ///< Position of its record in Medium::walk_cells().
   VecF head;          ///< First number of that record.
 };
 
@@ -40,7 +40,7 @@ struct SegmentState {
 
 /// A segment: the part of a ray in one super-voxel, or in one empty cube of them.
 struct Segment {
-  VecI record;        ///< Place of the super-voxel's record in Medium::walk_cells().
+  VecI record;        ///< Position of the super-voxel's record in Medium::walk_cells().
   VecF head;          ///< First number of that record.
   VecF exit;          ///< Where it ends [world].
   VecF plane[3];      ///< Where each axis leaves it [walk space].

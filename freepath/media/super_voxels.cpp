@@ -46,15 +46,15 @@ struct VoxelBox {
   Vec3i end;
 };
 
-/// @param corner first place of the cell in the grid
+/// @param corner first position of the cell in the grid
 VoxelBox voxels_of_cell(const PlacedVoxels& density, const Vec3i& corner, int cell_size) {
   constexpr double kRounding = 1e-6;  // of maps that are whole numbers of voxels
   const Matrix4d& map = density.to_component;
-  const Vec3d place = Vec3d(corner) * map;
+  const Vec3d first = Vec3d(corner) * map;
   VoxelBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    double low = place[axis];
-    double high = place[axis];
+    double low = first[axis];
+    double high = first[axis];
     for (int from = 0; from < 3; ++from) {
       const double along = map[from][axis] * cell_size;
       (along < 0 ? low : high) += along;
@@ -135,9 +135,9 @@ double expected_cost(const SuperVoxels& cells, std::span<const float> extinction
 
 /// min over j of max(|i - j|, line[j]) for all i, in a time that is linear in the line.
 ///
-/// Of the places up to i, one counts only while no later one has a smaller value: the rest wait in
-/// a queue, older ones with smaller values. Its front is the best until a later place is as good,
-/// and from then on never again. The other half is the same from the other end.
+/// Of the positions up to i, one counts only while no later one has a smaller value: the rest wait
+/// in a queue, older ones with smaller values. Its front is the best until a later position is as
+/// good, and from then on never again. The other half is the same from the other end.
 class NearestInLine {
  public:
   void replace(std::vector<int32_t>& line) {
@@ -146,17 +146,17 @@ class NearestInLine {
     for (const bool backward : {false, true}) {
       front_ = back_ = 0;
       for (std::size_t step = 0; step < line.size(); ++step) {
-        const std::size_t place = backward ? line.size() - 1 - step : step;
-        result_[place] = std::min(result_[place], best_of(static_cast<int32_t>(step), line[place]));
+        const std::size_t i = backward ? line.size() - 1 - step : step;
+        result_[i] = std::min(result_[i], best_of(static_cast<int32_t>(step), line[i]));
       }
     }
     line.swap(result_);
   }
-  /// Places looked at so far.
+  /// Positions looked at so far.
   std::size_t steps() const { return steps_; }
 
  private:
-  struct Place {
+  struct Step {
     int32_t step;
     int32_t value;
     int32_t at(int32_t here) const { return std::max(here - step, value); }
@@ -174,7 +174,7 @@ class NearestInLine {
     return waiting_[front_].at(step);
   }
 
-  std::vector<Place> waiting_;
+  std::vector<Step> waiting_;
   std::size_t front_ = 0;  ///< Of the queue,
   std::size_t back_ = 0;   ///< and one past its last.
   std::vector<int32_t> result_;

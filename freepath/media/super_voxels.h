@@ -59,12 +59,13 @@ struct SuperVoxelCost {
 
 /// A component's voxels, and where they stand in the grid that is cut into cells.
 ///
-/// The bounds of a cell are those of the voxels that the cell's own box of places covers, grown by
-/// one. A tap of the trilinear filter reads half a voxel less far: so much a place may be off.
+/// The bounds of a cell are those of the voxels that the cell's own box of positions covers, grown
+/// by one. A tap of the trilinear filter reads half a voxel less far: so much a position may be
+/// off.
 struct PlacedVoxels {
-  const VoxelRanges* ranges = nullptr;  ///< Of the component's map.
+  const VoxelRanges* ranges = nullptr;  ///< Ranges of the component's map.
   BrickWindow window;                   ///< What of the map the grid reaches.
-  Matrix4d to_component;  ///< Place in the grid → place in the window; see WalkSpace.
+  Matrix4d to_component;  ///< Position in the grid → position in the window; see WalkSpace.
 };
 
 /// How many cells are not too many.
@@ -89,7 +90,7 @@ SuperVoxels build_super_voxels(std::span<const PlacedVoxels> densities, const Ve
                                std::span<const float> extinction, int cell_size,
                                const CellLimits& limits = {}, const SuperVoxelCost& cost = {});
 
-/// The same for densities that share origin and brick counts, whose voxels are the grid. Their
+/// Super-voxels for densities that share origin and brick counts, whose voxels are the grid. Their
 /// indices must be dense.
 SuperVoxels build_super_voxels(std::span<const BrickMap* const> densities,
                                std::span<const float> extinction, int cell_size,

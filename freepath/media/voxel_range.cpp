@@ -76,13 +76,13 @@ ValueRange VoxelRanges::of_listed(const Vec3i& begin, const Vec3i& end) const {
   }
   const std::span<const PlacedBrick> bricks = map_.listed_bricks();
   auto listed = std::partition_point(bricks.begin(), bricks.end(), [&](const PlacedBrick& brick) {
-    return brick.place.x < first.x;
+    return brick.coord.x < first.x;
   });
   double found = 0;
-  for (; listed != bricks.end() && listed->place.x <= last.x; ++listed) {
-    const Vec3i& place = listed->place;
-    if (place.y < first.y || place.y > last.y || place.z < first.z || place.z > last.z) continue;
-    const Vec3i corner = (place - origin) * BrickMap::kBrickSize;
+  for (; listed != bricks.end() && listed->coord.x <= last.x; ++listed) {
+    const Vec3i& coord = listed->coord;
+    if (coord.y < first.y || coord.y > last.y || coord.z < first.z || coord.z > last.z) continue;
+    const Vec3i corner = (coord - origin) * BrickMap::kBrickSize;
     add_brick(listed->brick, begin - corner, end - corner, range);
     found += 1;
   }

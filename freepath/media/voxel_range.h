@@ -35,7 +35,8 @@ class VoxelRanges {
   /// Range of the voxels of the half-open box [begin, end), counted from the first of the index;
   /// those beyond the index are 0. Of a list of bricks the time is that of those in the box's slab.
   ValueRange of_box(const Vec3i& begin, const Vec3i& end) const;
-  /// The same, counted from the first of a window of the map; those beyond the window are 0.
+  /// The range in a box that is counted from the first voxel of a window of the map; those beyond
+  /// the window are 0.
   ValueRange of_box(const BrickWindow& window, const Vec3i& begin, const Vec3i& end) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace freepath {
 namespace {
 
-/// How far beyond a part's box its components are read, and rounding may move a place [voxels].
+/// How far beyond a part's box its components are read, and rounding may move a position [voxels].
 constexpr int kMargin = 2;
 
 int brick_below(int voxel) { return voxel >> 3; }
@@ -103,22 +103,22 @@ std::size_t WalkPart::memory_bytes() const {
   return bytes;
 }
 
-Matrix4d to_window(const WalkPart& part, const Matrix4d& place_to_field, const BrickMap& map,
+Matrix4d to_window(const WalkPart& part, const Matrix4d& grid_to_field, const BrickMap& map,
                    const BrickWindow& window) {
-  Matrix4d result = place_to_field;
-  const Vec3d first = Vec3d(part.first) * place_to_field + Vec3d(map.origin() - window.origin);
+  Matrix4d result = grid_to_field;
+  const Vec3d first = Vec3d(part.first) * grid_to_field + Vec3d(map.origin() - window.origin);
   for (int axis = 0; axis < 3; ++axis) result[3][axis] = first[axis];
   return result;
 }
 
-BrickWindow window_of(const BrickMap& map, const PlaceBox& box, const Matrix4d& place_to_field) {
+BrickWindow window_of(const BrickMap& map, const GridBox& box, const Matrix4d& grid_to_field) {
   if (!map.is_sparse()) return map.window();
   Box3d image;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3d point((corner & 1) != 0 ? box.end.x : box.begin.x,
                       (corner & 2) != 0 ? box.end.y : box.begin.y,
                       (corner & 4) != 0 ? box.end.z : box.begin.z);
-    image.extendBy(point * place_to_field);
+    image.extendBy(point * grid_to_field);
   }
   // Within the map, at whose border all is empty, or a brick of that.
   const Vec3i origin = map.origin() / BrickMap::kBrickSize;
@@ -126,7 +126,7 @@ BrickWindow window_of(const BrickMap& map, const PlaceBox& box, const Matrix4d& 
   Vec3i end;
   for (int axis = 0; axis < 3; ++axis) {
     const int voxels = map.brick_counts()[axis] * BrickMap::kBrickSize;
-    const auto inside = [&](double place) { return std::clamp(place, 0.0, double(voxels)); };
+    const auto inside = [&](double position) { return std::clamp(position, 0.0, double(voxels)); };
     begin[axis] = brick_below(static_cast<int>(inside(std::floor(image.min[axis]) - kMargin)));
     end[axis] = brick_above(static_cast<int>(inside(std::ceil(image.max[axis]) + kMargin)));
     begin[axis] = std::min(begin[axis], map.brick_counts()[axis] - 1);
@@ -143,7 +143,7 @@ WalkParts make_walk_parts(const WalkSpace& space, std::span<const Field* const> 
     result.parts.push_back(maker.whole());
     return result;
   }
-  std::vector<PlaceBox> occupied = space.occupied(fields);
+  std::vector<GridBox> occupied = space.occupied(fields);
   if (occupied.empty()) occupied.push_back({Vec3i(1), Vec3i(2)});  // as good a place as any
   result.tree = BoxTree(std::move(occupied));
   const auto leaves = result.tree.leaves();

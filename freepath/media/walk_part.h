@@ -16,26 +16,27 @@ namespace freepath {
 /// A box of a walk space with super-voxels and windows of its own, so that time and memory of a
 /// medium follow its voxels and not the box around them. Most media are one part.
 struct WalkPart {
-  PlaceBox box;    ///< What of the medium it holds; parts are disjoint [place in walk space].
+  GridBox box;     ///< What of the medium it holds; parts are disjoint [position in walk space].
   Vec3i first{0};  ///< First voxel of its grid, counted from the walk space's.
   SuperVoxels cells;
   std::size_t first_record = 0;      ///< Where its cells begin in Medium::walk_cells().
   std::vector<BrickWindow> windows;  ///< What it reads of each component's voxels.
 
-  /// The part's point in the middle [place in walk space].
+  /// The part's point in the middle [position in walk space].
   Vec3d middle() const { return (Vec3d(box.begin) + Vec3d(box.end)) / 2; }
   std::size_t memory_bytes() const;
 };
 
-/// Place in the part's grid → place in a window of a field, both counted from their first voxels.
-/// @param place_to_field place in walk space → place in the field's map
-Matrix4d to_window(const WalkPart& part, const Matrix4d& place_to_field, const BrickMap& map,
+/// Position in the part's grid → position in a window of a field, both counted from their first
+/// voxels.
+/// @param grid_to_field position in walk space → position in the field's map
+Matrix4d to_window(const WalkPart& part, const Matrix4d& grid_to_field, const BrickMap& map,
                    const BrickWindow& window);
 
 /// The window of a field that a box of walk space can read: the map's own index, or what is cut
 /// out of one that is a list of bricks.
-/// @param place_to_field place in walk space → place in the field's map
-BrickWindow window_of(const BrickMap& map, const PlaceBox& box, const Matrix4d& place_to_field);
+/// @param grid_to_field position in walk space → position in the field's map
+BrickWindow window_of(const BrickMap& map, const GridBox& box, const Matrix4d& grid_to_field);
 
 /// The parts of a medium of voxels.
 struct WalkParts {

@@ -10,8 +10,8 @@ namespace {
 
 /// Lanes count voxels in floats (small_to_int in base/lanes-inl.h), and interpolate between them.
 constexpr int kMostVoxels = 1 << 23;
-/// Where a place passes through another grid's, rounding may move it by half a voxel, as far as the
-/// bounds of super-voxels are dilated; see PlacedVoxels.
+/// Where a position passes through another grid's, rounding may move it by half a voxel, as far as
+/// the bounds of super-voxels are dilated; see PlacedVoxels.
 constexpr int kMostVoxelsApart = 1 << 20;
 
 bool have_one_layout(const Field& a, const Field& b) {
@@ -34,8 +34,8 @@ Matrix4d linear_part(Matrix4d matrix) {
   return matrix;
 }
 
-/// Index space → place, counted from a voxel.
-Matrix4d to_place(const Vec3i& origin) { return translation(Vec3d(0.5) - Vec3d(origin)); }
+/// Index space → position, counted from a voxel.
+Matrix4d index_to_grid(const Vec3i& origin) { return translation(Vec3d(0.5) - Vec3d(origin)); }
 
 /// Index space of one field → that of another. The fields' distance from the world's origin is
 /// taken out before anything is rounded.
@@ -80,8 +80,8 @@ void check_inverse(const Field& field) {
   }
 }
 
-/// Fails if the grid over all fields, or a part of it, is longer than places can be told apart, in
-/// voxels of its own or of a component.
+/// Fails if the grid over all fields, or a part of it, is longer than positions can be told apart,
+/// in voxels of its own or of a component.
 void check_extent(const Box3d& bounds, const WalkSpace& space, std::span<const Field* const> fields,
                   const Field& finest, int most) {
   for (std::size_t k = 0; k < fields.size(); ++k) {
@@ -126,9 +126,9 @@ WalkSpace common_space(std::span<const Field* const> fields) {
     space.voxel_counts[axis] = last - space.origin[axis] + 1;
   }
   for (const Field* field : fields) {
-    space.to_component.push_back(to_place(space.origin).inverse() *
+    space.to_component.push_back(index_to_grid(space.origin).inverse() *
                                  index_to_index(space.index_to_world, field->index_to_world) *
-                                 to_place(field->voxels.origin()));
+                                 index_to_grid(field->voxels.origin()));
   }
   return space;
 }
@@ -169,37 +169,37 @@ Box3d WalkSpace::bounds(std::span<const Field* const> fields, double reach) cons
   Box3d box;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const Vec3i& first = fields[k]->voxels.origin();
-    const Box3d places = transformed(active_box(*fields[k], reach), to_place(first));
-    box.extendBy(to_component[k] == Matrix4d() ? places
-                                               : transformed(places, to_component[k].inverse()));
+    const Box3d covered = transformed(active_box(*fields[k], reach), index_to_grid(first));
+    box.extendBy(to_component[k] == Matrix4d() ? covered
+                                               : transformed(covered, to_component[k].inverse()));
   }
   return box;
 }
 
-std::vector<PlaceBox> WalkSpace::occupied(std::span<const Field* const> fields) const {
+std::vector<GridBox> WalkSpace::occupied(std::span<const Field* const> fields) const {
   constexpr double kRounding = 1e-3;  // of maps that are whole voxels
-  std::vector<PlaceBox> boxes;
+  std::vector<GridBox> boxes;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const BrickMap& map = fields[k]->voxels;
-    const Box3d active = transformed(active_box(*fields[k], 1.5), to_place(map.origin()));
+    const Box3d active = transformed(active_box(*fields[k], 1.5), index_to_grid(map.origin()));
     const Matrix4d from_component = to_component[k].inverse();
     map.for_each_brick([&](const PlacedBrick& placed) {
-      const Vec3d first(placed.place * BrickMap::kBrickSize - map.origin());
-      Box3d places(first - Vec3d(1), first + Vec3d(BrickMap::kBrickSize + 1));
-      PlaceBox box;
+      const Vec3d first(placed.coord * BrickMap::kBrickSize - map.origin());
+      Box3d covered(first - Vec3d(1), first + Vec3d(BrickMap::kBrickSize + 1));
+      GridBox box;
       for (int axis = 0; axis < 3; ++axis) {
-        places.min[axis] = std::max(places.min[axis], active.min[axis]);
-        places.max[axis] = std::min(places.max[axis], active.max[axis]);
-        if (!(places.min[axis] < places.max[axis])) return;
+        covered.min[axis] = std::max(covered.min[axis], active.min[axis]);
+        covered.max[axis] = std::min(covered.max[axis], active.max[axis]);
+        if (!(covered.min[axis] < covered.max[axis])) return;
       }
       if (!aligned)
-        places = transformed(places, from_component);
+        covered = transformed(covered, from_component);
       else
-        places = {places.min + from_component.translation(),
-                  places.max + from_component.translation()};
+        covered = {covered.min + from_component.translation(),
+                   covered.max + from_component.translation()};
       for (int axis = 0; axis < 3; ++axis) {
-        box.begin[axis] = static_cast<int>(std::floor(places.min[axis] + kRounding));
-        box.end[axis] = static_cast<int>(std::ceil(places.max[axis] - kRounding));
+        box.begin[axis] = static_cast<int>(std::floor(covered.min[axis] + kRounding));
+        box.end[axis] = static_cast<int>(std::ceil(covered.max[axis] - kRounding));
       }
       boxes.push_back(box);
     });
@@ -249,7 +249,7 @@ WalkSpace make_walk_space(std::span<const Field* const> fields) {
   space = common_space(fields);
   space.in_parts = any_sparse;
   if (!any_sparse && !is_worth_an_index(blocks_in(space.voxel_counts), 0)) {
-    const std::vector<PlaceBox> boxes = space.occupied(fields);
+    const std::vector<GridBox> boxes = space.occupied(fields);
     space.in_parts =
         !is_worth_an_index(blocks_in(space.voxel_counts), BoxTree::filled_blocks(boxes));
     if (space.in_parts && one_transform) return shared_space(fields);
@@ -258,7 +258,7 @@ WalkSpace make_walk_space(std::span<const Field* const> fields) {
   return space;
 }
 
-void check_part(const WalkSpace& space, const PlaceBox& box, std::span<const Field* const> fields) {
+void check_part(const WalkSpace& space, const GridBox& box, std::span<const Field* const> fields) {
   if (space.aligned) return;
   check_extent({Vec3d(box.begin), Vec3d(box.end)}, space, fields, finest_of(fields),
                kMostVoxelsApart);

@@ -28,7 +28,8 @@ class Deadline {
 
   /// When a first pass ends at the latest, complete or not, under a time limit [s].
   static double first_pass_limit(double time_limit) { return 2 * time_limit + 1; }
-  /// When later passes do: they are planned to end in time, and plans are wrong by some percent.
+  /// When later passes end at the latest: they are planned to end in time, and plans are wrong by
+  /// some percent.
   static double later_pass_limit(double time_limit) { return 1.05 * time_limit + 0.25; }
 
  private:

@@ -24,7 +24,7 @@ constexpr float kLeastShare = 0.01F;
 /// Of the grid in which the box around all that can emit is sought.
 constexpr int kCellsOfSearch = 32 * 32 * 32;
 
-/// How far rounding may move a place [voxels].
+/// How far rounding may move a position [voxels].
 constexpr double kSlack = 1e-2;
 
 Matrix4d to_matrix(const AffineMap& map) {
@@ -62,10 +62,10 @@ Box3d transformed(const Box3d& box, const Matrix4d& matrix) {
 /// A field, to be read at points of the grid.
 class PlacedField {
  public:
-  /// @param to_place grid → place in the field's voxels; unused for functions
+  /// @param to_voxels grid → position in the field's voxels; unused for functions
   /// @param to_world grid → world; for functions alone
-  PlacedField(const Field& field, const Matrix4d& to_place, const Matrix4d& to_world)
-      : field_(&field), to_world_(to_world), to_place_(to_place) {
+  PlacedField(const Field& field, const Matrix4d& to_voxels, const Matrix4d& to_world)
+      : field_(&field), to_world_(to_world), to_voxels_(to_voxels) {
     if (!field.function) ranges_ = std::make_unique<VoxelRanges>(field.voxels);
   }
 
@@ -76,7 +76,7 @@ class PlacedField {
       field_->function->evaluate(std::span(&position, 1), std::span(&density, 1));
       return density;
     }
-    return field_->voxels.interpolate(point * to_place_ + Vec3d(field_->voxels.origin()) -
+    return field_->voxels.interpolate(point * to_voxels_ + Vec3d(field_->voxels.origin()) -
                                       Vec3d(0.5));
   }
 
@@ -94,12 +94,12 @@ class PlacedField {
       range.add({low, high});
       return range;
     }
-    const Box3d places = transformed(box, to_place_);
+    const Box3d voxels = transformed(box, to_voxels_);
     Vec3i begin;
     Vec3i end;
     for (int axis = 0; axis < 3; ++axis) {
-      begin[axis] = static_cast<int>(std::floor(places.min[axis] - 0.5 - kSlack));
-      end[axis] = static_cast<int>(std::floor(places.max[axis] - 0.5 + kSlack)) + 2;
+      begin[axis] = static_cast<int>(std::floor(voxels.min[axis] - 0.5 - kSlack));
+      end[axis] = static_cast<int>(std::floor(voxels.max[axis] - 0.5 + kSlack)) + 2;
     }
     return ranges_->of_box(begin, end);
   }
@@ -107,7 +107,7 @@ class PlacedField {
  private:
   const Field* field_;
   Matrix4d to_world_;
-  Matrix4d to_place_;
+  Matrix4d to_voxels_;
   std::unique_ptr<VoxelRanges> ranges_;
 };
 
@@ -116,11 +116,11 @@ float radiance_of(const RadianceField& radiance, double value) {
   if (!radiance.table) return static_cast<float>(value);
   const std::vector<float>& table = *radiance.table;
   const auto last = static_cast<double>(table.size() - 1);
-  const double place = std::clamp((value - radiance.first) / radiance.step, 0.0, last);
-  const double base = std::floor(std::min(place, std::max(last - 1, 0.0)));
+  const double position = std::clamp((value - radiance.first) / radiance.step, 0.0, last);
+  const double base = std::floor(std::min(position, std::max(last - 1, 0.0)));
   const auto i = static_cast<std::size_t>(base);
   const float after = table[std::min(i + 1, table.size() - 1)];
-  return table[i] + static_cast<float>(place - base) * (after - table[i]);
+  return table[i] + static_cast<float>(position - base) * (after - table[i]);
 }
 
 /// The largest radiance that a range of values stands for.
@@ -212,8 +212,8 @@ template <class Function>
 double mean_over_cell(const Vec3i& cell, const Function& function) {
   double sum = 0;
   for (int i = 0; i < kPoints * kPoints * kPoints; ++i) {
-    const Vec3d place(Vec3i(i / (kPoints * kPoints), i / kPoints % kPoints, i % kPoints));
-    sum += function(Vec3d(cell) + (place + Vec3d(0.5)) / kPoints);
+    const Vec3d sub_cell(Vec3i(i / (kPoints * kPoints), i / kPoints % kPoints, i % kPoints));
+    sum += function(Vec3d(cell) + (sub_cell + Vec3d(0.5)) / kPoints);
   }
   return sum / (kPoints * kPoints * kPoints);
 }

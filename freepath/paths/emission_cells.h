@@ -32,7 +32,7 @@ struct CellGrid {
 
 /// What the parts of a medium emit.
 struct EmissionCells {
-  CellGrid grid;  ///< Of the box around all that can emit; no cells where nothing can.
+  CellGrid grid;  ///< Grid over the box around all that can emit; no cells where nothing can.
   /// Estimated means of Σ_k ρ_k σ_a,k L_k over the cells and the channels [radiance/m]. 0 only
   /// where nothing can be emitted.
   std::vector<float> power;

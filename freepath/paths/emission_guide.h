@@ -53,7 +53,7 @@ class EmissionGuide {
   EmissionCells cells_;
   double power_ = 0;
   std::vector<float> density_;     ///< Probability of a cell over its volume, divided by 3 [1/m³].
-  std::vector<AliasEntry> table_;  ///< Of the cells.
+  std::vector<AliasEntry> table_;  ///< Alias table of the cells.
 };
 
 }  // namespace freepath

@@ -19,10 +19,10 @@ struct FilmHeader {
   PictureIdentity identity;
   /// The pixels that the film's picture is a tile of; its own window where it is no tile.
   PixelWindow region;
-  uint32_t wanted_samples = 0;  ///< Of each pixel, that the film is to have; 0: not known.
+  uint32_t wanted_samples = 0;  ///< Samples of each pixel that the film is to have; 0: not known.
   PathCounts counts;
   double seconds = 0;
-  /// What its maker wants to know of it later on, in any form.
+  /// Notes of its maker for later on, in any form.
   std::string notes;
 
   // What describe() says of the film, which those that read and write it do.
@@ -45,7 +45,7 @@ void describe(FilmHeader& header, const Film& film);
 
 /// The extension of films' files.
 inline constexpr const char* kFilmExtension = ".film";
-/// Whether a name has it.
+/// Whether a name has the extension of film files.
 bool is_film_file(const std::string& path);
 
 /// Writes a film: a line that names the format, the header as JSON, the sums packed by Blosc, and a

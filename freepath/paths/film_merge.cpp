@@ -18,7 +18,7 @@ struct Part {
 };
 
 /// "samples 0 to 15 of pixel (3, 4)"
-std::string place_text(uint32_t first, uint32_t end, int x, int y) {
+std::string samples_text(uint32_t first, uint32_t end, int x, int y) {
   const std::string samples = end == first + 1 ? fmt::format("sample {}", first)
                                                : fmt::format("samples {} to {}", first, end - 1);
   return fmt::format("{} of pixel ({}, {})", samples, x, y);
@@ -59,7 +59,7 @@ void check_no_overlap(const Part& a, const Part& b) {
   const uint32_t end = std::min(end_of(a), end_of(b));
   if (first >= end) return;
   fail("{} and {} overlap: both have {}; merge one of them alone", a.file, b.file,
-       place_text(first, end, x, y));
+       samples_text(first, end, x, y));
 }
 
 /// The smallest rectangle around two.
@@ -118,7 +118,7 @@ class SeedMerger {
     fail(
         "no part has {}, though others go further; add the part that is missing, or take what "
         "there is by --partial",
-        place_text(first, end, x, y));
+        samples_text(first, end, x, y));
   }
 
   Film& film_;

@@ -20,7 +20,7 @@ struct MergeOptions {
 
 /// The film of a part, in memory.
 struct FilmPart {
-  std::string name;  ///< For messages.
+  std::string name;  ///< Name for messages.
   const FilmHeader* header = nullptr;
   const Film* film = nullptr;
 };
@@ -35,7 +35,7 @@ struct FilmPart {
 /// @throws Error that names the files: for parts of different pictures, and that overlap; where
 ///   samples are missing; as read_film
 FilmFile merge_films(const std::vector<std::string>& files, const MergeOptions& options = {});
-/// The same of films in memory.
+/// Merges films in memory.
 FilmFile merge_films(std::span<const FilmPart> films, const MergeOptions& options = {});
 
 }  // namespace freepath

@@ -37,7 +37,7 @@ inline constexpr uint64_t kMostColumns = uint64_t{1} << 22;
 /// One quantity, as a fraction of what falls on the domain, and of what falls on each column.
 struct FluxMap {
   Estimate all;
-  /// Along the first of the level axes first, empty where there is one column.
+  /// Estimates of the columns, along the first of the level axes first; empty where there is one.
   std::vector<Estimate> columns;
 };
 
@@ -47,8 +47,8 @@ struct FluxResult {
   FluxMap unscattered;    ///< The part of the transmittance that never scattered.
   /// Part that stays in the medium; a ground below it keeps more.
   FluxMap absorptance;
-  /// Of each view π I / F: the radiance I by that of a white diffuse surface under the flux F that
-  /// falls on the top. Light that never scattered is no part of it.
+  /// Radiances towards each view, as π I / F: the radiance I by that of a white diffuse surface
+  /// under the flux F that falls on the top. Light that never scattered is no part of it.
   std::vector<FluxMap> radiances;
   Estimate leaving;  ///< Reflectance and transmittance together.
   /// Largest magnitude of a weight that left. Far above 1 (a tracker whose rate is no bound), the

@@ -37,9 +37,9 @@ FluxMeter::Start FluxMeter::start(RandomStream& random) const {
   start.origin[axis_] = top_;
   for (const int side : sides_) {
     const double low = box_.min[side];
-    const double place = low + random.uniform() * (box_.max[side] - low);
+    const double position = low + random.uniform() * (box_.max[side] - low);
     start.origin[side] =
-        std::clamp(static_cast<float>(place), static_cast<float>(low),
+        std::clamp(static_cast<float>(position), static_cast<float>(low),
                    std::nextafter(static_cast<float>(box_.max[side]), static_cast<float>(low)));
   }
   if (beam) {

@@ -34,7 +34,8 @@ class FluxMeter {
 
   /// Columns along the other two axes, in their order.
   std::array<uint32_t, 2> counts{1, 1};
-  /// In which light falls, a unit vector; none: the same radiance from all directions above.
+  /// Direction in which light falls, a unit vector; none: the same radiance from all directions
+  /// above.
   std::optional<Vec3f> beam;
   /// Directions towards those who look at the columns: unit vectors, none of them level.
   std::vector<Vec3f> views;
@@ -67,7 +68,7 @@ class FluxMeter {
   void set_depth(Vec3f& point, float depth) const {
     point[axis_] = rises_ ? top_ - depth : top_ + depth;
   }
-  /// What one of the branches beyond so many planes stands for.
+  /// The share of the light that one of the branches beyond so many planes stands for.
   static double share_at(uint32_t level) {
     constexpr uint64_t kExponentOfOne = 1023;
     return std::bit_cast<double>((kExponentOfOne - level) << 52);
@@ -88,7 +89,7 @@ class FluxMeter {
     if (columns() == 1) return 0;
     return number(point, 1) * counts[0] + number(point, 0);
   }
-  /// The one by whose top or bottom a ray leaves.
+  /// The column by whose top or bottom a ray leaves.
   /// @param domain that repeats, if there is one
   uint32_t column_left(const Vec3f& origin, const Vec3f& direction,
                        const std::optional<PeriodicDomain>& domain) const;

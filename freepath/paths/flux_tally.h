@@ -53,7 +53,7 @@ class FluxRecord {
     for (uint32_t i = 0; i < count_; ++i) f(i < kFew ? few_[i] : more_[i - kFew]);
   }
 
-  uint32_t branches = 1;  ///< So far, the path itself included.
+  uint32_t branches = 1;  ///< Branches so far, the path itself included.
   /// Branches that were split off and have yet to fly: one after the other, the latest first, so
   /// that no sum depends on what else is under way.
   std::vector<Branch> waiting;

@@ -29,9 +29,9 @@ MediumId MediaCombinations::number(std::vector<MediumId> members) const {
   }
   const std::unique_lock lock(mutex_);
   const auto next = static_cast<MediumId>(media_ + members_.size());
-  const auto [place, is_new] = numbers_.try_emplace(members, next);
+  const auto [entry, is_new] = numbers_.try_emplace(members, next);
   if (is_new) members_.push_back(std::move(members));
-  return place->second;
+  return entry->second;
 }
 
 std::vector<MediumId> MediaCombinations::members(MediumId combination) const {

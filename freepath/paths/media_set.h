@@ -34,18 +34,18 @@ class MediaSet {
     }
   };
 
-  /// Those whose number is not 0, by medium.
+  /// Media whose number is not 0, in the order of their ids.
   std::span<const Entry> entries() const { return {entries_.data(), size_}; }
 
   /// @throws Error where there are more media at once than it holds
   void add(MediumId medium, int32_t count) {
     if (medium == kVacuum || count == 0) return;
-    uint32_t place = 0;
-    while (place < size_ && entries_[place].medium < medium) ++place;
-    if (place < size_ && entries_[place].medium == medium) {
-      entries_[place].count += count;
-      if (entries_[place].count == 0) {
-        for (--size_; place < size_; ++place) entries_[place] = entries_[place + 1];
+    uint32_t slot = 0;
+    while (slot < size_ && entries_[slot].medium < medium) ++slot;
+    if (slot < size_ && entries_[slot].medium == medium) {
+      entries_[slot].count += count;
+      if (entries_[slot].count == 0) {
+        for (--size_; slot < size_; ++slot) entries_[slot] = entries_[slot + 1];
       }
       return;
     }
@@ -53,8 +53,8 @@ class MediaSet {
       fail("more than {} media overlap at one place; make boundaries name what is around them",
            kCapacity);
     }
-    for (uint32_t i = size_++; i > place; --i) entries_[i] = entries_[i - 1];
-    entries_[place] = {medium, count};
+    for (uint32_t i = size_++; i > slot; --i) entries_[i] = entries_[i - 1];
+    entries_[slot] = {medium, count};
   }
 
   /// Crosses a boundary.

@@ -18,9 +18,9 @@ RenderSettings pilot_settings(const RenderSettings& settings);
 
 /// What a pilot has found.
 struct NoisePlan {
-  uint32_t samples = 0;        ///< Of each pixel, that the noise takes.
-  uint32_t pilot_samples = 0;  ///< That it took to know.
-  double pilot_noise = 0;      ///< Of the pilot's picture.
+  uint32_t samples = 0;        ///< Samples of each pixel that the noise takes.
+  uint32_t pilot_samples = 0;  ///< Samples of each pixel that the pilot took.
+  double pilot_noise = 0;      ///< Noise of the pilot's picture.
   bool is_known = false;       ///< Whether the pilot had samples enough to tell.
   bool interrupted = false;
 };

@@ -25,7 +25,7 @@ void OpenJobs::begin(const Film& film, std::size_t paths_per_sample, bool is_lig
 
 bool OpenJobs::has_room() const { return open_count_ < kFewestOpenJobs || waiting_ < kMostWaiting; }
 
-std::size_t OpenJobs::place_of(std::size_t paths) const {
+std::size_t OpenJobs::first_free_slot(std::size_t paths) const {
   const auto is_free = [&](std::size_t first) {
     return std::none_of(jobs_.begin(), jobs_.end(), [&](const Job& job) {
       return job.is_open && first < job.first + job.paths && job.first < first + paths;
@@ -43,7 +43,7 @@ std::size_t OpenJobs::place_of(std::size_t paths) const {
 
 uint32_t OpenJobs::open(const PathJob& job, const Film& film) {
   const std::size_t paths = job.sample_count() * paths_per_sample_;
-  const std::size_t first = place_of(paths);
+  const std::size_t first = first_free_slot(paths);
   const auto renew = [&](auto& values) {
     values.resize(std::max(values.size(), first + paths));
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), paths,

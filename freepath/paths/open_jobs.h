@@ -36,11 +36,12 @@ class OpenJobs {
     PathJob job;
     std::size_t first = 0;  ///< Place of its first path's result.
     std::size_t paths = 0;
-    std::size_t paths_left = 0;  ///< Those that have not ended.
+    std::size_t paths_left = 0;  ///< Paths that have not ended.
     bool is_open = false;
     PathCounts counts;  ///< But for walks.
-    /// In what place each sample (pixel by pixel) started, if not in that of its number: results
-    /// lie in the order in which paths start, so that those of paths in flight lie close together.
+    /// The slot in which each sample (pixel by pixel) started, if not in that of its number:
+    /// results lie in the order in which paths start, so that those of paths in flight lie close
+    /// together.
     std::vector<uint32_t> started;
 
     /// Place of the result of a sample's first path.
@@ -52,13 +53,14 @@ class OpenJobs {
   const Job& operator[](uint32_t number) const { return jobs_[number]; }
 
   std::vector<PathSample> results;
-  std::vector<SampledSpectrum> spectra;  ///< Of the same paths, if the film records them.
-  LayerRecorder layers;                  ///< Of the results.
-  std::vector<FluxRecord> fluxes;        ///< Of paths of light, which clear theirs as they start.
+  /// Radiance of the same paths, if the film records spectra.
+  std::vector<SampledSpectrum> spectra;
+  LayerRecorder layers;            ///< Layers of the results.
+  std::vector<FluxRecord> fluxes;  ///< Records of paths of light, which clear theirs as they start.
 
  private:
   /// The lowest place where so many results lie beside those of open jobs.
-  std::size_t place_of(std::size_t paths) const;
+  std::size_t first_free_slot(std::size_t paths) const;
 
   std::size_t paths_per_sample_ = 1;
   bool is_light_ = false;

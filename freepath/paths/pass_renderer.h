@@ -28,8 +28,8 @@ namespace freepath {
 /// Paths of a job: enough to fill a wavefront many times over, so that its end, where lanes idle,
 /// counts little; few enough to share a pass evenly.
 inline constexpr std::size_t kPathsPerJob = 8192;
-/// In a first pass that may run out of time, where jobs under way are lost, jobs are to take this
-/// part of the time; but not fewer paths, since lanes idle at the end of each job.
+/// The part of the time that jobs are to take in a first pass that may run out of time, where jobs
+/// under way are lost; but not fewer paths, since lanes idle at the end of each job.
 inline constexpr double kHastyShareOfTime = 0.1;
 inline constexpr std::size_t kFewestPathsPerJob = 512;
 /// Even where many pixels are best traced together.
@@ -98,7 +98,7 @@ class PassRenderer {
   }
 
  private:
-  /// Of a clock that began anywhere [s].
+  /// Time of a clock that began anywhere [s].
   double time() const {
     if (settings_.clock) return settings_.clock();
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())

@@ -126,7 +126,7 @@ void PathWavefront::cast_shadow(std::size_t i) {
   if (is_black(radiance)) return;
   const ScenePath& path = paths_[scattering.slot];
   shadows_.add(scattering.slot, path, vector_at(scatterings_.position, i),
-               vector_at(scatterings_.to_light, i), scattering.end, path.place, radiance,
+               vector_at(scatterings_.to_light, i), scattering.end, path.media, radiance,
                scattering.in_rgb);
 }
 

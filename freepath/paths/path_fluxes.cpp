@@ -34,7 +34,7 @@ void PathWavefront::start_light(std::size_t path_number, ScenePath& path) {
   const FluxMeter::Start start = meter_->start(random);
   path.origin = path.turned_at = start.origin;
   path.direction = start.direction;
-  set_place(path, camera_place_);
+  set_media(path, camera_media_);
   record_of(path).clear();
 }
 
@@ -85,7 +85,7 @@ void PathWavefront::show_collision(std::size_t scattering) {
     const float weight = scattered.phase->evaluate(direction, view) * meter_->weight_of_view(i);
     if (weight == 0) continue;
     const uint32_t column = meter_->column_left(position, view, scene_.domain);
-    shadows_.add(scattered.slot, path, position, view, kOutside, path.place,
+    shadows_.add(scattered.slot, path, position, view, kOutside, path.media,
                  path.throughput * weight, false, meter_->cell_of_view(i, column));
   }
 }
@@ -102,7 +102,7 @@ void PathWavefront::show_surface(std::size_t slot, const SurfaceHit& hit, const 
     const Departure departure = depart(path, hit, view);
     const uint32_t column = meter_->column_left(departure.origin, view, scene_.domain);
     shadows_.add(static_cast<uint32_t>(slot), path, departure.origin, view, kOutside,
-                 departure.place, path.throughput * weight, false, meter_->cell_of_view(i, column));
+                 departure.media, path.throughput * weight, false, meter_->cell_of_view(i, column));
   }
 }
 

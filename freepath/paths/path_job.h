@@ -47,8 +47,8 @@ struct PathJobSource {
 
 /// Counts of paths, and of the walks that they took.
 struct PathCounts {
-  WalkStatistics free_paths;   ///< Of the tracker.
-  WalkStatistics shadow_rays;  ///< Of the transmittance estimator.
+  WalkStatistics free_paths;   ///< Statistics of the tracker.
+  WalkStatistics shadow_rays;  ///< Statistics of the transmittance estimator.
   uint64_t paths = 0;
   /// Paths whose weight grew beyond the range of float; they count as 0, so a picture with any is
   /// not to be trusted. Only rates that are no bound can do that.
@@ -71,7 +71,7 @@ struct PathCounts {
     return static_cast<double>(cut_weight) * kWeightUnit /
            static_cast<double>(std::max<uint64_t>(paths, 1));
   }
-  /// Of all walks.
+  /// Statistics of all walks.
   WalkStatistics statistics() const {
     WalkStatistics sum = free_paths;
     sum.merge(shadow_rays);

@@ -95,8 +95,8 @@ void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, 
   for (std::size_t c = 0; c < per_sample; ++c) {
     radiance += jobs_.spectra[done.result_of(sample, per_sample) + c];
   }
-  const SamplePlace place = place_of(job, sample);
-  const SpectrumValues& values = colors_of(place.pixel, place.sample).spectra;
+  const PixelSample at = pixel_sample_of(job, sample);
+  const SpectrumValues& values = colors_of(at.pixel, at.sample).spectra;
   // In the light's units, which the colour matching of our observer takes out.
   constexpr auto kLightUnit = static_cast<float>(1 / kLuminousIntegral);
   film.add_spectrum(job.first_pixel + sample / job.samples,

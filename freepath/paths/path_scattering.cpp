@@ -52,7 +52,7 @@ std::optional<SurfaceHit> PathWavefront::first_there(const ScenePath& path) {
   const AlphaChance chance{setup_.seed, path.pixel, path.sample_key,
                            stream_number(StreamPurpose::kWalk, path.turned_in)};
   const auto is_there = [&](const SurfaceHit& hit) {
-    return chance.meets(hit.place.key, scene_.alpha_at(hit.point));
+    return chance.meets(hit.position.key, scene_.alpha_at(hit.point));
   };
   const auto is_missing = [&](const TiedSurface& tied) {
     return scene_.shapes[tied.shape].alpha &&
@@ -83,14 +83,15 @@ std::optional<SurfaceHit> PathWavefront::choose_surface(const ScenePath& path) {
   if (ties_.empty()) return hit;
   Vec3f beyond = surfaces.offset_ray_origin(hit.point, path.direction);
   const auto take = [&](TiedSurface& tied) {
-    const TiedSurface before{hit.place, hit.point.shape, !hit.from_inside};
+    const TiedSurface before{hit.position, hit.point.shape, !hit.from_inside};
     hit = surfaces.describe(path.origin, path.direction, tied);
     tied = before;
   };
   // All boundaries at the place are crossed at once: nothing lies between them.
   if (rank(hit.point.shape) == 0) {
     for (TiedSurface& tied : ties_) {
-      if (rank(tied.shape) > 0 || surfaces.is_beyond(tied.place, beyond, path.direction)) continue;
+      const bool waits = surfaces.is_beyond(tied.position, beyond, path.direction);
+      if (rank(tied.shape) > 0 || waits) continue;
       take(tied);
       beyond = surfaces.offset_ray_origin(hit.point, path.direction);
     }
@@ -100,7 +101,7 @@ std::optional<SurfaceHit> PathWavefront::choose_surface(const ScenePath& path) {
   int highest = rank(hit.point.shape);
   for (TiedSurface& tied : ties_) {
     const int other = rank(tied.shape);
-    if (other <= highest || !surfaces.is_beyond(tied.place, beyond, path.direction)) continue;
+    if (other <= highest || !surfaces.is_beyond(tied.position, beyond, path.direction)) continue;
     highest = other;
     chosen = &tied;
   }
@@ -110,14 +111,14 @@ std::optional<SurfaceHit> PathWavefront::choose_surface(const ScenePath& path) {
 
 PathWavefront::Departure PathWavefront::depart(const ScenePath& path, const SurfaceHit& hit,
                                                const Vec3f& direction) {
-  Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.place};
+  Departure departure{scene_.surfaces->offset_ray_origin(hit.point, direction), path.media};
   const auto cross = [&](uint32_t shape, bool enters) {
-    departure.place = places_.cross(departure.place, shape, enters);
+    departure.media = media_sets_.cross(departure.media, shape, enters);
   };
   const bool goes_through = (direction.dot(hit.point.normal) > 0) == hit.from_inside;
   if (goes_through) cross(hit.point.shape, !hit.from_inside);
   for (const TiedSurface& tied : ties_) {
-    if (scene_.surfaces->is_beyond(tied.place, departure.origin, path.direction)) {
+    if (scene_.surfaces->is_beyond(tied.position, departure.origin, path.direction)) {
       cross(tied.shape, tied.enters);
     }
   }
@@ -151,7 +152,7 @@ void PathWavefront::pass_hole(ScenePath& path) {
 
 void PathWavefront::cross_boundary(ScenePath& path, const SurfaceHit& hit) {
   const Departure departure = depart(path, hit, path.direction);
-  set_place(path, departure.place);
+  set_media(path, departure.media);
   if (path.scatterings == 0) path.distance += hit.t;
   go_on(path, departure.origin, path.direction);
 }
@@ -248,7 +249,7 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
       if (!is_black(radiance)) {
         const Departure departure = depart(path, hit, light.direction);
         shadows_.add(static_cast<uint32_t>(slot), path, departure.origin, light.direction,
-                     shadow_end(light), departure.place, radiance, false);
+                     shadow_end(light), departure.media, radiance, false);
       }
     }
   }
@@ -266,7 +267,7 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
   const Departure departure = depart(path, hit, next->direction);
-  set_place(path, departure.place);
+  set_media(path, departure.media);
   turn(path, position, departure.origin, next->direction);
 }
 

@@ -25,7 +25,7 @@ namespace freepath {
 /// What a shape of PathScene::surfaces is made of.
 struct PathShape {
   std::optional<uint32_t> material;  ///< None: a boundary, where the medium alone changes.
-  std::optional<uint32_t> light;     ///< Of SceneLightsDescription::area_lights.
+  std::optional<uint32_t> light;     ///< Index in SceneLightsDescription::area_lights.
   /// The media on both sides, as MediaSet::cross takes them. Where they are the same, nothing
   /// changes.
   MediumId inside = kVacuum, outside = kVacuum;
@@ -66,12 +66,12 @@ struct PathScene {
   /// scene is in it; of surfaces that reach beyond its sides nothing is seen there.
   std::optional<PeriodicDomain> domain;
   float exposure_scale = 1;  ///< What the film multiplies radiance by.
-  /// From R, G, B of the light to those of the film, before they are scaled: the balance of white.
+  /// Balance of white: from R, G, B of the light to those of the film, before they are scaled.
   Imath::M33f white_balance;
   PixelFilter filter;
   SampleKind samples = SampleKind::kSobol;
-  /// Of each medium: whether no surface passes through its bounds and all of them are filled with
-  /// it, so that flights that begin in them need not look for surfaces before they leave.
+  /// Tells of each medium whether no surface passes through its bounds and all of them are filled
+  /// with it, so that flights that begin in them need not look for surfaces before they leave.
   std::vector<bool> is_clear;
 
   /// The share of a shape that is there at a point of it, [0, 1].

@@ -6,7 +6,7 @@
 
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
-#include "freepath/paths/media_places.h"
+#include "freepath/paths/media_set_table.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/sample_spectra.h"
 
@@ -19,13 +19,13 @@ struct alignas(64) ScenePath {
   uint64_t lookups = 0;       ///< Look-ups of densities so far.
   MediumId medium = kVacuum;  ///< What the media around are together.
   int channel = -1;           ///< The one channel that it carries, or -1.
-  PlaceId place = 0;          ///< Which media are around: MediaPlaces.
+  MediaSetId media = 0;       ///< Which media are around: MediaSetTable.
   uint32_t pixel = 0;
-  uint32_t sample_key = 0;  ///< Of its random numbers.
+  uint32_t sample_key = 0;  ///< Key of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.
   uint32_t turned_in = 0;   ///< The flight with which its direction began.
   uint32_t scatterings = 0;
-  /// With what density its direction was drawn [1/sr]; 0: it had no choice, or comes from the
+  /// Density with which its direction was drawn [1/sr]; 0: it had no choice, or comes from the
   /// camera.
   float pdf = 0;
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
@@ -46,14 +46,14 @@ struct alignas(64) ScenePath {
   SampledSpectrum rgb;
   SampledSpectrum density{1.0F};  ///< FlightStream::density of the flights so far.
 
-  Vec3f origin{0};     ///< Of its ray [world, relative to the scene's origin].
-  Vec3f direction{0};  ///< Of its ray, unit [world].
+  Vec3f origin{0};     ///< Origin of its ray [world, relative to the scene's origin].
+  Vec3f direction{0};  ///< Direction of its ray, unit [world].
   /// Where the direction began: at the camera, a surface or a collision. Unlike `origin` it stays
   /// where it is when the ray crosses a boundary.
   Vec3f turned_at{0};
   /// Length of its ray up to a side of the domain, or a plane where paths split [world].
   float side = std::numeric_limits<float>::infinity();
-  uint32_t job = 0;     ///< Of OpenJobs.
+  uint32_t job = 0;     ///< Number of its job in OpenJobs.
   uint32_t result = 0;  ///< Place of what it finds in OpenJobs::results.
   float distance = 0;   ///< Flown from the camera, until the first event [world].
   uint32_t sides = 0;   ///< Passed so far.

@@ -22,13 +22,13 @@ PathWavefront::PathWavefront(const PathSetup& setup)
     : setup_(setup),
       scene_(*setup.scene),
       meter_(setup.meter),
-      places_(*setup.scene, *setup.factory),
+      media_sets_(*setup.scene, *setup.factory),
       paths_(setup.slots),
       slots_(setup.slots),
       flying_(setup.slots, true),
       sent_(setup.slots, true),
       kernels_(setup.factory->scattering()),
-      shadows_(*setup.scene, places_, setup.seed, setup.slots),
+      shadows_(*setup.scene, media_sets_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots) {
   if (scene_.surfaces) hits_.resize(setup.slots);
   if (!scene_.surfaces && scene_.media.size() == 1 && !scene_.domain && meter_ == nullptr) {
@@ -40,7 +40,7 @@ PathWavefront::PathWavefront(const PathSetup& setup)
   }
   set_only_light();
   is_balanced_ = scene_.white_balance == Imath::M33f();
-  camera_place_ = places_.of(scene_.camera_media);
+  camera_media_ = media_sets_.of(scene_.camera_media);
   for (uint32_t shape = 0; shape < scene_.shapes.size(); ++shape) {
     has_alpha_ = has_alpha_ || scene_.shapes[shape].alpha;
     const std::optional<uint32_t> light = scene_.shapes[shape].light;
@@ -183,8 +183,8 @@ void PathWavefront::set_order(OpenJobs::Job& opened) {
   sets_.resize(total);
   opened.started.resize(total);
   for (std::size_t i = 0; i < total; ++i) {
-    const SamplePlace place = place_of(job, i);
-    sets_[i] = setup_.factory->set_of(place.pixel, place.sample) - setup_.first_set;
+    const PixelSample at = pixel_sample_of(job, i);
+    sets_[i] = setup_.factory->set_of(at.pixel, at.sample) - setup_.first_set;
     ++begin_of_set_[sets_[i] + 1];
   }
   std::partial_sum(begin_of_set_.begin(), begin_of_set_.end(), begin_of_set_.begin());
@@ -194,10 +194,11 @@ void PathWavefront::set_order(OpenJobs::Job& opened) {
   }
 }
 
-PathWavefront::SamplePlace PathWavefront::place_of(const PathJob& job, std::size_t number) const {
-  const auto place = static_cast<uint32_t>(number);  // whose divisions take a third of the time
-  return {window_.in_picture(job.first_pixel + place / job.samples),
-          job.first_sample + place % job.samples};
+PathWavefront::PixelSample PathWavefront::pixel_sample_of(const PathJob& job,
+                                                          std::size_t number) const {
+  const auto ordinal = static_cast<uint32_t>(number);  // whose divisions take a third of the time
+  return {window_.in_picture(job.first_pixel + ordinal / job.samples),
+          job.first_sample + ordinal % job.samples};
 }
 
 std::array<float, 2> PathWavefront::film_pair(const SampleSequence& numbers, uint32_t pixel,
@@ -217,7 +218,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   const auto per_sample = static_cast<uint32_t>(setup_.factory->paths_per_sample());
   const uint32_t ordered = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
-  const auto [picture_pixel, sample_number] = place_of(jobs_[newest_].job, ordered);
+  const auto [picture_pixel, sample_number] = pixel_sample_of(jobs_[newest_].job, ordered);
   path.result = static_cast<uint32_t>(jobs_[newest_].first) + number;
   path.pixel = picture_pixel;
   path.sample_key = sample_number * per_sample + channel;
@@ -248,7 +249,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   path.throughput *= filtered.weight;
   path.origin = path.turned_at = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;
-  set_place(path, camera_place_);
+  set_media(path, camera_media_);
   if (scene_.domain) {
     if (const auto entry = scene_.domain->enter(ray.origin - scene_.origin, path.direction)) {
       path.origin = path.turned_at = entry->origin;

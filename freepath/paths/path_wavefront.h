@@ -34,7 +34,7 @@ struct PathSetup {
   const WavelengthSampler* factory = nullptr;
   uint64_t seed = 0;
   Absorption absorption = Absorption::kWeighted;
-  uint32_t max_scatterings = UINT32_MAX;  ///< Of surfaces and media together.
+  uint32_t max_scatterings = UINT32_MAX;  ///< Most scatterings at surfaces and in media together.
   bool transparent = false;               ///< RenderSettings::transparent
   /// Russian roulette is played where no channel's throughput reaches this.
   float roulette_threshold = 0.25F;
@@ -44,10 +44,10 @@ struct PathSetup {
   /// Which shadow rays are cast; null: all.
   const ShadowGuide* shadow_guide = nullptr;
   std::size_t slots = kPathsInFlight;
-  /// Of the sets of wavelengths that samples of a pass may have, from first_set on.
+  /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const SampleSpectra>> colors;
   uint32_t first_set = 0;
-  /// Where paths begin at a meter, as light does, and not at the camera: what there is of it, and
+  /// The meter where paths begin, as light does, if not at the camera, and
   /// who sums what they bring. Such paths carry one channel, and lights have no part in it.
   const FluxMeter* meter = nullptr;
   FluxTally* tally = nullptr;
@@ -88,12 +88,12 @@ class PathWavefront {
   void end_path(ScenePath& path, const PathJobSource& jobs, Film& film);
   /// Fills order_, and tells the job.
   void set_order(OpenJobs::Job& opened);
-  struct SamplePlace {
-    uint32_t pixel;   ///< Of the picture.
-    uint32_t sample;  ///< Of the pixel.
+  struct PixelSample {
+    uint32_t pixel;   ///< Number in the picture.
+    uint32_t sample;  ///< Number in the pixel.
   };
   /// @param number of the job's samples, pixel by pixel
-  SamplePlace place_of(const PathJob& job, std::size_t number) const;
+  PixelSample pixel_sample_of(const PathJob& job, std::size_t number) const;
   /// The numbers of a sample's place on the film; those of a pixel often follow each other.
   std::array<float, 2> film_pair(const SampleSequence& numbers, uint32_t pixel, uint32_t sample);
   /// @param path_number of the newest job's paths
@@ -148,12 +148,12 @@ class PathWavefront {
   /// Where a new ray starts at a surface, and the media that are there.
   struct Departure {
     Vec3f origin;
-    PlaceId place;
+    MediaSetId media;
   };
   Departure depart(const ScenePath& path, const SurfaceHit& hit, const Vec3f& direction);
-  void set_place(ScenePath& path, PlaceId place) const {
-    path.place = place;
-    path.medium = places_.medium(place);
+  void set_media(ScenePath& path, MediaSetId media) const {
+    path.media = media;
+    path.medium = media_sets_.medium(media);
   }
   ShadowEnd shadow_end(const LightSample& light) const {
     if (!light.area || light.area->light >= shapes_of_lights_.size()) return {light.distance};
@@ -210,12 +210,12 @@ class PathWavefront {
   bool is_cut(const ScenePath& path) const { return path.scatterings > setup_.max_scatterings; }
   /// @param albedo of what would scatter it
   void count_cut(const ScenePath& path, const SampledSpectrum& albedo);
-  /// By Russian roulette.
+  /// Decides by Russian roulette whether a path goes on.
   /// @param u in (0, 1)
   /// @return false if the path has ended
   bool survives(ScenePath& path, float u) const;
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
-  /// The same in a new direction.
+  /// Sends a path on in a new direction.
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
   /// The medium of the scene, and its component, in which a collision takes place.
   MediumWalkers::Origin scatterer_of(const ScenePath& path, std::size_t component) const;
@@ -252,8 +252,8 @@ class PathWavefront {
   const PathSetup& setup_;
   const PathScene& scene_;
   const FluxMeter* meter_;  // of the setup
-  MediaPlaces places_;
-  PlaceId camera_place_ = 0;
+  MediaSetTable media_sets_;
+  MediaSetId camera_media_ = 0;
   std::optional<Box3f> everything_;                        // around the medium, if that is all
   bool is_balanced_ = true;                                // whether white stays as it is
   bool has_alpha_ = false;                                 // whether a shape of the scene has
@@ -272,7 +272,7 @@ class PathWavefront {
     uint32_t slot = 0;
     bool in_rgb = false;  ///< Whether the light is.
     const PhaseFunction* phase = nullptr;
-    ShadowEnd end;             ///< Of the shadow ray.
+    ShadowEnd end;             ///< End of the shadow ray.
     SampledSpectrum radiance;  ///< What the light brings unshadowed, times the density of the draw.
   };
   /// How the component scatters that the scattering before was of.

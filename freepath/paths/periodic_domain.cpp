@@ -42,8 +42,8 @@ Vec3f PeriodicDomain::fold(const Vec3d& point) const {
     if (!repeats_[axis]) continue;
     const double low = exact_.min[axis];
     const double period = exact_.max[axis] - low;
-    const double place = point[axis] - low;
-    const double inside = place - std::floor(place / period) * period;
+    const double offset = point[axis] - low;
+    const double inside = offset - std::floor(offset / period) * period;
     folded[axis] = std::clamp(static_cast<float>(low + inside), box_.min[axis], box_.max[axis]);
   }
   return folded;

@@ -53,7 +53,7 @@ class PeriodicDomain {
   /// Where a ray from anywhere comes into the domain.
   struct Entry {
     Vec3f origin;
-    float way = 0;  ///< From where the ray began.
+    float way = 0;  ///< Distance from where the ray began.
   };
   /// Nothing for a ray that never does.
   std::optional<Entry> enter(const Vec3d& origin, const Vec3f& direction) const;

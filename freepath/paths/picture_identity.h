@@ -14,7 +14,7 @@ namespace freepath {
 /// What a picture depends on, bit by bit, besides its samples' numbers: films can be merged where
 /// it is the same.
 struct PictureIdentity {
-  std::string version;  ///< Of freepath.
+  std::string version;  ///< Version of freepath.
   uint64_t seed = 0;
   /// Names and values: options that were given, contents of files (ContentDigest), the methods.
   std::vector<std::pair<std::string, std::string>> facts;

@@ -18,7 +18,7 @@ namespace freepath {
 struct RenderedBefore {
   Film film;
   PathCounts counts;
-  double seconds = 0;  ///< That it took.
+  double seconds = 0;  ///< Time that it took [s].
 };
 
 /// Called with what there is of a picture, whole jobs alone, while no thread adds to it.
@@ -27,7 +27,7 @@ using CheckpointFunction =
 
 /// How much to render, and with what.
 struct RenderSettings {
-  uint32_t samples = 64;      ///< Of each pixel; 0: as many as the time allows.
+  uint32_t samples = 64;      ///< Samples of each pixel; 0: as many as the time allows.
   uint32_t first_sample = 0;  ///< Number of the first of them.
   /// [s] 0: none. Passes are planned to end in time. One that doesn't is broken off: a first pass,
   /// after which each pixel has one sample, where it would take more than twice the limit and a
@@ -36,7 +36,7 @@ struct RenderSettings {
   /// Never breaks a pass off for want of time: all pixels have as many samples, two at least, so
   /// that their variance is known. The time is that of the pass which ends next to it.
   bool whole_passes = false;
-  int wavelengths = 4;  ///< Of a path, where they are rendered: 1 to kMaxChannels.
+  int wavelengths = 4;  ///< Wavelengths of a path, where they are rendered: 1 to kMaxChannels.
   int threads = 0;      ///< 0: as many as the machine has.
   uint32_t max_scatterings = UINT32_MAX;
   /// Renders although the weights of paths are not bounded (WeightGrowth): to study methods, not
@@ -74,7 +74,7 @@ struct RenderSettings {
 
 /// What is done so far.
 struct RenderProgress {
-  double samples_done = 0;   ///< Of each pixel, on average.
+  double samples_done = 0;   ///< Samples of each pixel, on average.
   double samples_total = 0;  ///< 0: as many as the time allows.
   double seconds = 0;
 };
@@ -82,8 +82,9 @@ struct RenderProgress {
 /// A picture and how it came about.
 struct RenderResult {
   Film film;
-  PathCounts counts = {};  ///< Of those before, too, where a picture was gone on with.
-  /// Of the pixel with the fewest, and with the most: the same, unless a pass was broken off.
+  PathCounts counts = {};  ///< Counts, those before included where a picture was gone on with.
+  /// Samples of the pixel with the fewest, and with the most: the same, unless a pass was broken
+  /// off.
   uint32_t samples = 0, most_samples = 0;
   std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
   double seconds = 0;

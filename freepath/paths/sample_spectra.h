@@ -27,7 +27,7 @@ struct MediumWalkers {
 
   BoundMedium bound;
   std::vector<Walker> walkers;
-  std::vector<Origin> origins;  ///< Of the components of a combination; else none.
+  std::vector<Origin> origins;  ///< Origins of the components of a combination; else none.
 };
 
 class WavelengthSampler;
@@ -44,7 +44,7 @@ class SampleSpectra {
         media(std::move(walkers)),
         factory_(factory) {}
 
-  /// Of a medium, or of a combination, which are made when they are first asked for.
+  /// The walkers of a medium, or of a combination, which are made when they are first asked for.
   /// @throws Error if the media of a combination can't be walked together
   const MediumWalkers& walkers(MediumId medium) const {
     const auto number = static_cast<std::size_t>(medium);
@@ -58,7 +58,7 @@ class SampleSpectra {
   const SpectrumValues spectra;
   /// What makes the sum of a radiance's channels 1 where it is white: an illuminant of R, G, B = 1.
   const float per_white;
-  /// The same of their mean.
+  /// What makes the mean of a radiance's channels 1 where it is white.
   const float mean_per_white;
   const std::vector<std::shared_ptr<const MediumWalkers>> media;
 

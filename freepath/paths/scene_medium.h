@@ -27,8 +27,9 @@ struct SceneMediumComponent {
   SpectrumId radiance;
   float radiance_scale = 1;
   std::shared_ptr<const Field> radiance_field;
-  std::optional<TemperatureEmission> temperature;  ///< In place of radiance.
-  std::optional<SpectrumId> temperature_factor;    ///< Of that, too; none: 1.
+  /// Emission of a black body, in place of radiance.
+  std::optional<TemperatureEmission> temperature;
+  std::optional<SpectrumId> temperature_factor;  ///< Factor of that emission; none: 1.
   PhaseFunction phase = {};
 };
 
@@ -39,7 +40,7 @@ struct ColorVoxels {
   Matrix4d index_to_world;
   std::vector<RgbSpectrum> sigma_a, sigma_s;  ///< x fastest [1/m].
   std::vector<RgbSpectrum> radiance;          ///< Illuminants.
-  float scale = 1;                            ///< Of both coefficients.
+  float scale = 1;                            ///< Factor of both coefficients.
   float radiance_scale = 1;
   PhaseFunction phase = {};
   int super_voxel = 0;  ///< Edge of the super-voxels [voxels], 0 for automatic.
@@ -58,7 +59,7 @@ class SceneMedium {
   ///   the spectra can be, and decide the size of super-voxels alone
   SceneMedium(std::string name, std::shared_ptr<const Medium> medium,
               std::vector<SceneMediumComponent> components);
-  /// The same everywhere in a box, and nowhere else.
+  /// A medium that is the same everywhere in a box, and nowhere else.
   /// @param box in a space of its own, which box_to_world puts into the world
   /// @param largest_sigma_t bounds what the spectra can be [1/m]
   static SceneMedium homogeneous(std::string name, SceneMediumComponent component, const Box3d& box,
@@ -71,11 +72,11 @@ class SceneMedium {
 
   /// Whether its cross sections are the same at all wavelengths.
   bool is_grey(const SpectrumTable& table) const;
-  /// Whether its emission is, too.
+  /// Whether its cross sections and its emission are the same at all wavelengths.
   bool is_constant(const SpectrumTable& table) const;
 
   const std::string& name() const { return name_; }
-  /// Of a component as events number them.
+  /// The phase function of a component as events number them.
   const PhaseFunction& phase(std::size_t component) const {
     return phases_[std::min(component, phases_.size() - 1)];
   }
@@ -83,19 +84,19 @@ class SceneMedium {
   SampledSpectrum albedo(std::size_t component, const SpectrumValues& spectra) const;
   /// Memory that `bind` takes for so many wavelengths, beside what all of them share.
   std::size_t bytes_of_set(int wavelengths) const;
-  /// What it fills [world].
+  /// The box that it fills [world].
   const Box3d& bounds() const { return bounds_; }
-  /// Beyond which it is nowhere, whatever filter its voxels are read by [world]: what it fills and,
-  /// if it is not cut off there, half a voxel more.
+  /// The box beyond which it is nowhere, whatever filter its voxels are read by [world]: what it
+  /// fills and, if it is not cut off there, half a voxel more.
   Box3d outer_bounds() const;
   /// Null where voxels depend on wavelengths.
   const std::shared_ptr<const Medium>& medium() const { return medium_; }
   const std::vector<SceneMediumComponent>& components() const { return components_; }
-  /// Those voxels; null of media that have none.
+  /// Voxels of colours; null of media that have none.
   const std::shared_ptr<const ColorVoxels>& colors() const { return colors_; }
   /// Whether it is the same everywhere in its bounds.
   bool is_homogeneous() const { return is_homogeneous_; }
-  /// The same in another box; only of a homogeneous one.
+  /// A copy in another box; only of a homogeneous medium.
   SceneMedium in_box(const Box3d& box, const Matrix4d& box_to_world) const;
 
  private:

@@ -28,7 +28,7 @@ constexpr float kDominantShare = 0.25F;
 constexpr int kCells = 24;
 constexpr uint32_t kRaysOfCell = 4;
 /// Streams that no path has.
-constexpr uint32_t kPlaceStream = 0xFFFFFFFDU;
+constexpr uint32_t kPositionStream = 0xFFFFFFFDU;
 constexpr uint32_t kWalkStream = 0xFFFFFFFCU;
 /// Media beyond these have no cells: their tables would take longer than they save.
 constexpr std::size_t kMostMedia = 4;
@@ -103,12 +103,12 @@ ShadowRoulette ShadowGuide::tabulate(const PathScene& scene, const BoundMedium& 
   rays.resize(std::size_t{count} * kRaysOfCell);
   for (uint32_t i = 0; i < rays.size(); ++i) {
     const uint32_t cell = i % count;
-    const Vec3i place(static_cast<int>(cell) % cells.counts.x,
+    const Vec3i coord(static_cast<int>(cell) % cells.counts.x,
                       static_cast<int>(cell) / cells.counts.x % cells.counts.y,
                       static_cast<int>(cell) / cells.counts.x / cells.counts.y);
-    RandomStream random(seed, cell, i / count, kPlaceStream);
+    RandomStream random(seed, cell, i / count, kPositionStream);
     const Vec3f within{random.uniform(), random.uniform(), random.uniform()};
-    set_ray(rays, i, cells.corner + (Vec3f(place) + within) / cells.per_cell, *dominant_,
+    set_ray(rays, i, cells.corner + (Vec3f(coord) + within) / cells.per_cell, *dominant_,
             std::numeric_limits<float>::infinity());
     rays.pixel[i] = cell;
     rays.sample[i] = i / count;

@@ -47,8 +47,8 @@ class ShadowGuide {
   ShadowRoulette tabulate(const PathScene& scene, const BoundMedium& bound, const Box3d& bounds,
                           uint64_t seed);
 
-  /// Without transmittances. Its threshold is the luminance of what the lights from outside bring
-  /// by an isotropic scattering, times a constant.
+  /// The roulette without transmittances. Its threshold is the luminance of what the lights from
+  /// outside bring by an isotropic scattering, times a constant.
   ShadowRoulette elsewhere_;
   std::optional<Vec3f> dominant_;
   std::vector<ShadowRoulette> media_;      // if there is a dominant direction

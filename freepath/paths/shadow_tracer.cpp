@@ -23,10 +23,10 @@ uint32_t stream_of(uint32_t flight, uint32_t segment) {
 
 }  // namespace
 
-ShadowTracer::ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed,
+ShadowTracer::ShadowTracer(const PathScene& scene, MediaSetTable& media_sets, uint64_t seed,
                            std::size_t slots)
     : scene_(scene),
-      places_(places),
+      media_sets_(media_sets),
       seed_(seed),
       has_holes_(std::any_of(scene.materials.begin(), scene.materials.end(),
                              [](const Material& material) { return material.has_holes(); }) ||
@@ -45,10 +45,10 @@ void ShadowTracer::add_open(const ScenePath& path, MediumId medium, const Vec3f&
   batch.rays.stream[slot] = stream_of(path.flights, 0);
 }
 
-void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin,
+void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, MediaSetId media, float begin,
                                float end) {
   if (!(begin < end)) return;
-  const MediumId medium = places_.medium(place);
+  const MediumId medium = media_sets_.medium(media);
   if (medium == kVacuum) return;
   const Walker& walker = path.colors->walker(medium, path.channel);
   auto [batch, slot] = batches_.add(walker, static_cast<uint32_t>(segments_.size()));
@@ -61,7 +61,7 @@ void ShadowTracer::add_segment(Shadow& shadow, const ScenePath& path, PlaceId pl
 }
 
 bool ShadowTracer::passes(const Shadow& shadow, Arrival& arrival, const ScenePath& path,
-                          const SurfaceHit& hit, PlaceId& place) {
+                          const SurfaceHit& hit, MediaSetId& media) {
   const float alpha = scene_.alpha_at(hit.point);
   if (alpha == 0) return true;
   const PathShape& shape = scene_.shapes[hit.point.shape];
@@ -74,8 +74,8 @@ bool ShadowTracer::passes(const Shadow& shadow, Arrival& arrival, const ScenePat
   // Media on both sides of it have no mean.
   const AlphaChance chance{seed_, path.pixel, path.sample_key,
                            stream_number(StreamPurpose::kShadowWalk, path.flights)};
-  if (chance.meets(hit.place.key, alpha)) {
-    place = places_.cross(place, hit.point.shape, !hit.from_inside);
+  if (chance.meets(hit.position.key, alpha)) {
+    media = media_sets_.cross(media, hit.point.shape, !hit.from_inside);
   }
   return true;
 }
@@ -83,9 +83,9 @@ bool ShadowTracer::passes(const Shadow& shadow, Arrival& arrival, const ScenePat
 void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
   const Surfaces& surfaces = *scene_.surfaces;
   float begin = 0;
-  PlaceId place = shadow.place;
+  MediaSetId media = shadow.media;
   Vec3f origin = shadow.origin;
-  const auto is_end = [&](const RayPlace& met) {
+  const auto is_end = [&](const RayPosition& met) {
     return surfaces.is_end(origin, shadow.direction, met,
                            {shadow.end.distance - begin, shadow.end.target});
   };
@@ -94,17 +94,17 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const
     if (!hit) break;
     ties_.clear();
     if (hit->is_tied) surfaces.find_ties(origin, shadow.direction, *hit, ties_);
-    bool ends = is_end(hit->place);
+    bool ends = is_end(hit->position);
     const Vec3f beyond = surfaces.offset_ray_origin(hit->point, shadow.direction);
     const float end = begin + hit->t;
-    add_segment(shadow, path, place, begin, end);
-    bool is_free = ends || passes(shadow, arrival, path, *hit, place);
+    add_segment(shadow, path, media, begin, end);
+    bool is_free = ends || passes(shadow, arrival, path, *hit, media);
     for (const TiedSurface& tied : ties_) {
       // What a ray from beyond meets may wait.
-      if (!surfaces.is_beyond(tied.place, beyond, shadow.direction)) continue;
+      if (!surfaces.is_beyond(tied.position, beyond, shadow.direction)) continue;
       const SurfaceHit there = surfaces.describe(origin, shadow.direction, tied);
-      ends = ends || is_end(there.place);
-      is_free = is_free && (ends || passes(shadow, arrival, path, there, place));
+      ends = ends || is_end(there.position);
+      is_free = is_free && (ends || passes(shadow, arrival, path, there, media));
     }
     if (ends) return;
     if (!is_free) {
@@ -114,7 +114,7 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const
     begin = end;
     origin = beyond;
   }
-  add_segment(shadow, path, place, begin, shadow.end.distance);
+  add_segment(shadow, path, media, begin, shadow.end.distance);
 }
 
 void ShadowTracer::trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
@@ -151,12 +151,12 @@ void ShadowTracer::trace_part(Shadow& shadow, Arrival& arrival, const ScenePath&
     return;
   }
   if (!scene_.surfaces) {
-    add_segment(shadow, path, shadow.place, 0, shadow.end.distance);
+    add_segment(shadow, path, shadow.media, 0, shadow.end.distance);
     return;
   }
   float begin = 0;
-  PlaceId place = shadow.place;
-  std::optional<RayPlace> last;  // which crossing came before
+  MediaSetId media = shadow.media;
+  std::optional<RayPosition> last;  // which crossing came before
   while (true) {
     if (scene_.surfaces->occluded(shadow.origin, shadow.direction, shadow.end, crossings_,
                                   last ? &*last : nullptr)) {
@@ -165,17 +165,17 @@ void ShadowTracer::trace_part(Shadow& shadow, Arrival& arrival, const ScenePath&
     }
     for (const BoundaryCrossing& crossing : crossings_.all()) {
       // Those at one place are crossed as one: nothing lies between them.
-      if (!last || !crossing.place.is_tied(*last)) {
-        const auto end = static_cast<float>(crossing.place.t);
-        add_segment(shadow, path, place, begin, end);
+      if (!last || !crossing.position.is_tied(*last)) {
+        const auto end = static_cast<float>(crossing.position.t);
+        add_segment(shadow, path, media, begin, end);
         begin = end;
       }
-      last = crossing.place;
-      place = places_.cross(place, crossing.shape, crossing.enters);
+      last = crossing.position;
+      media = media_sets_.cross(media, crossing.shape, crossing.enters);
     }
     if (!crossings_.overflowed()) break;
   }
-  add_segment(shadow, path, place, begin, shadow.end.distance);
+  add_segment(shadow, path, media, begin, shadow.end.distance);
 }
 
 void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics,

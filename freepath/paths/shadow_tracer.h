@@ -7,7 +7,7 @@
 
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
-#include "freepath/paths/media_places.h"
+#include "freepath/paths/media_set_table.h"
 #include "freepath/paths/path_scene.h"
 #include "freepath/paths/path_state.h"
 #include "freepath/paths/walk_batches.h"
@@ -20,25 +20,25 @@ class ShadowTracer {
  public:
   static constexpr uint32_t kNoCell = UINT32_MAX;
 
-  /// @param scene,places must outlive this
-  ShadowTracer(const PathScene& scene, MediaPlaces& places, uint64_t seed, std::size_t slots);
+  /// @param scene,media_sets must outlive this
+  ShadowTracer(const PathScene& scene, MediaSetTable& media_sets, uint64_t seed, std::size_t slots);
 
   /// Adds a ray.
   /// @param owner number of the path, whose radiance it is to add to
-  /// @param place at its origin
+  /// @param media at its origin
   /// @param radiance what it adds if nothing is in between
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
   /// @param cell of a FluxMeter that it is to add to, and not to the path; kNoCell: none
   void add(uint32_t owner, const ScenePath& path, const Vec3f& origin, const Vec3f& direction,
-           const ShadowEnd& end, PlaceId place, const SampledSpectrum& radiance, bool is_rgb,
+           const ShadowEnd& end, MediaSetId media, const SampledSpectrum& radiance, bool is_rgb,
            uint32_t cell = kNoCell) {
     arrivals_.push_back({radiance, owner, cell, is_rgb});
     if (is_open_) {
-      const MediumId medium = places_.medium(place);
+      const MediumId medium = media_sets_.medium(media);
       if (medium != kVacuum) add_open(path, medium, origin, direction, end.distance);
       return;
     }
-    shadows_.push_back({origin, direction, end, place});
+    shadows_.push_back({origin, direction, end, media});
     // While its path is at hand.
     if (!scene_.surfaces) trace_surfaces(shadows_.back(), arrivals_.back(), path);
   }
@@ -61,7 +61,7 @@ class ShadowTracer {
   struct Shadow {
     Vec3f origin, direction;
     ShadowEnd end;
-    PlaceId place;
+    MediaSetId media;
     uint32_t segments = 0;
   };
   /// A ray's way through one medium.
@@ -76,20 +76,20 @@ class ShadowTracer {
                 float end);
   /// Sends a ray's ways through media to their walkers; black if a surface is in between.
   void trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// The same from side to side of a domain that repeats.
+  /// Traces a ray from side to side of a domain that repeats.
   void trace_domain(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// The same of a ray that meets no side.
+  /// Traces a ray that meets no side.
   void trace_part(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// The same where surfaces have holes or are there in part: place by place.
+  /// Traces a ray where surfaces have holes or are there in part: one position after the other.
   void trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
   /// Whether a ray goes on at a surface, which it crosses then; what is there in part takes its
   /// part.
   bool passes(const Shadow& shadow, Arrival& arrival, const ScenePath& path, const SurfaceHit& hit,
-              PlaceId& place);
-  void add_segment(Shadow& shadow, const ScenePath& path, PlaceId place, float begin, float end);
+              MediaSetId& media);
+  void add_segment(Shadow& shadow, const ScenePath& path, MediaSetId media, float begin, float end);
 
   const PathScene& scene_;
-  MediaPlaces& places_;
+  MediaSetTable& media_sets_;
   uint64_t seed_;
   bool has_holes_ = false;  // whether a material or an alpha of the scene has
   bool is_open_ = false;    // whether each ray has at most one medium on its way

@@ -53,7 +53,7 @@ struct SlabResult {
   double largest_weight = 0;
   uint64_t paths = 0;          ///< Fewer than asked for where interrupted.
   std::string tracker_reason;  ///< Why `auto` has chosen it; empty where it was given.
-  std::string tracker;         ///< As it was understood, options that are not standard included.
+  std::string tracker;  ///< Tracker as it was understood, options that are not standard included.
 };
 
 /// Layers as a medium: densities are columns of voxels along z, and x and y are collapsed, so that

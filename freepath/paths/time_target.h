@@ -12,8 +12,8 @@ inline constexpr double kShortestPlannedTime = 20;
 
 /// What a pilot has found.
 struct TimePlan {
-  uint32_t samples = 0;  ///< Of each pixel, that the time allows; 0: not known.
-  double seconds = 0;    ///< That the pilot took.
+  uint32_t samples = 0;  ///< Samples of each pixel that the time allows; 0: not known.
+  double seconds = 0;    ///< Time that the pilot took [s].
 };
 
 /// The number of samples that a picture can have in its time limit, by a pilot: a picture of the

@@ -19,7 +19,7 @@ class WalkBatches {
     const Walker* walker = nullptr;
     RayStream rays;
     std::vector<uint32_t> owners;  ///< What the caller calls each ray; there may be room for more.
-    std::size_t count = 0;         ///< Of rays.
+    std::size_t count = 0;         ///< Number of rays.
   };
 
   /// @param capacity rays that there will be, or more
@@ -29,11 +29,11 @@ class WalkBatches {
   void clear();
 
   /// Where to put the next ray of a walker.
-  struct Place {
+  struct Slot {
     Batch& batch;
     std::size_t slot;
   };
-  Place add(const Walker& walker, uint32_t owner) {
+  Slot add(const Walker& walker, uint32_t owner) {
     if (last_ >= used_ || batches_[last_].walker != &walker) last_ = number_of(walker);
     Batch& batch = batches_[last_];
     const std::size_t slot = batch.count++;
@@ -43,7 +43,7 @@ class WalkBatches {
   }
 
   /// Where to put the next rays of a walker, one behind the other; the caller writes their owners.
-  Place add_all(const Walker& walker, std::size_t count) {
+  Slot add_all(const Walker& walker, std::size_t count) {
     if (last_ >= used_ || batches_[last_].walker != &walker) last_ = number_of(walker);
     Batch& batch = batches_[last_];
     const std::size_t slot = batch.count;
@@ -52,7 +52,7 @@ class WalkBatches {
     return {batch, slot};
   }
 
-  /// Those that hold rays, their streams of the right size. To be called after the last ray.
+  /// Batches that hold rays, their streams of the right size. To be called after the last ray.
   std::vector<Batch*>& finish();
 
  private:

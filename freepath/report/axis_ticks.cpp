@@ -28,9 +28,9 @@ std::string typeset(std::string number) {
   }
   const std::size_t point = std::min(number.find('.'), number.size());
   if (point > 4) {
-    for (std::size_t place = point - 3;; place -= 3) {
-      number.insert(place, kThinSpace);
-      if (place <= 3) break;
+    for (std::size_t offset = point - 3;; offset -= 3) {
+      number.insert(offset, kThinSpace);
+      if (offset <= 3) break;
     }
   }
   return sign + number;

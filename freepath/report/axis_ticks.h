@@ -6,7 +6,7 @@
 
 namespace freepath {
 
-/// From a value to its place along an axis.
+/// The map from a value to its position along an axis.
 class AxisScale {
  public:
   /// @param minimum, maximum finite and apart, above 0 where it is logarithmic
@@ -35,7 +35,7 @@ struct TickLabel {
 struct AxisTick {
   double value = 0;
   TickLabel label = {};
-  bool is_minor = false;  ///< Without a label.
+  bool is_minor = false;  ///< Whether it has no label.
 };
 
 /// A step of 1, 2 or 5 times a power of ten, for which about `wanted` fit into a length.

@@ -54,8 +54,8 @@ struct BarLayout {
 double right_end(const ChartBar& bar, const BarLayout& layout) {
   double end = layout.base;
   for (const std::optional<double>& value : {std::optional(bar.value), bar.low, bar.high}) {
-    const double place = value ? layout.axis.place(*value) : std::nan("");
-    if (std::isfinite(place)) end = std::max(end, place);
+    const double position = value ? layout.axis.position(*value) : std::nan("");
+    if (std::isfinite(position)) end = std::max(end, position);
   }
   return std::min(end, layout.plot.right);
 }
@@ -87,13 +87,13 @@ BarLayout layout_of(const BarChart& chart) {
   axis.from = plot.left;
   axis.to = plot.right;
   axis.ticks = axis_ticks(axis.scale, std::max(2.0, plot.width() / 75));
-  const double zero = axis.scale.logarithmic() ? plot.left : axis.place(0);
+  const double zero = axis.scale.logarithmic() ? plot.left : axis.position(0);
   layout.base = std::clamp(zero, plot.left, plot.right);
   return layout;
 }
 
 void draw_bar(SvgWriter& svg, const ChartBar& bar, const BarLayout& layout, double middle) {
-  const double end = layout.axis.place(bar.value);
+  const double end = layout.axis.position(bar.value);
   if (!std::isfinite(end)) return;
   svg.begin_ink(bar.is_best ? "best" : "bar");
   svg.add(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="currentColor"/>)",
@@ -101,8 +101,8 @@ void draw_bar(SvgWriter& svg, const ChartBar& bar, const BarLayout& layout, doub
           coordinate(std::abs(end - layout.base)), coordinate(layout.thickness()));
   svg.end_group();
   if (!bar.low || !bar.high) return;
-  const double high = layout.axis.place(*bar.high);
-  double low = layout.axis.place(*bar.low);
+  const double high = layout.axis.position(*bar.high);
+  double low = layout.axis.position(*bar.low);
   // On a logarithmic axis 0 and less is beyond the left end.
   if (std::isnan(low) && std::isfinite(*bar.low)) low = layout.plot.left - 10;
   if (!std::isfinite(low) || !std::isfinite(high)) return;
@@ -132,7 +132,7 @@ std::string to_svg(const BarChart& chart) {
     draw_bar(svg, chart.bars[i], layout, layout.middle(i));
   }
   if (chart.mark_at) {
-    const double x = layout.axis.place(*chart.mark_at);
+    const double x = layout.axis.position(*chart.mark_at);
     if (std::isfinite(x)) svg.line(x, plot.top, x, plot.bottom, R"(stroke-dasharray="5 3")");
   }
   svg.end_clip();

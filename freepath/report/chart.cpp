@@ -97,15 +97,15 @@ double widest(const std::vector<LegendEntry>& entries) {
 }
 
 /// Places the entries in rows of equal columns below each other; returns the height.
-double place_in_rows(std::vector<LegendEntry>& entries, double left, double width) {
+double arrange_in_rows(std::vector<LegendEntry>& entries, double left, double width) {
   constexpr double kGap = 22;
   const double column = widest(entries) + kGap;
   const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor((width + kGap) / column)));
   double row = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::size_t place = i % columns;
-    if (place == 0 && i > 0) row += kLegendRow;
-    entries[i].x = left + static_cast<double>(place) * column;
+    const std::size_t column_index = i % columns;
+    if (column_index == 0 && i > 0) row += kLegendRow;
+    entries[i].x = left + static_cast<double>(column_index) * column;
     entries[i].y = row;
   }
   return row + kLegendRow;
@@ -165,7 +165,7 @@ ChartLayout layout_of(const Chart& chart, const std::vector<SeriesLook>& looks) 
     }
     layout.legend_top = plot.top + 10;
   } else if (!layout.legend.empty()) {
-    plot.bottom -= place_in_rows(layout.legend, kMargin, chart.width - 2 * kMargin) + 4;
+    plot.bottom -= arrange_in_rows(layout.legend, kMargin, chart.width - 2 * kMargin) + 4;
     layout.legend_top = plot.bottom + kBottomAxisHeight + 12;
   }
   layout.y.ticks = axis_ticks(layout.y.scale, std::max(2.0, plot.height() / 50));

@@ -9,7 +9,7 @@ namespace freepath {
 
 /// How values are laid out along a side of a chart.
 struct ChartAxis {
-  std::string label;         ///< With its unit: "time [s]".
+  std::string label;         ///< Label with its unit: "time [s]".
   bool logarithmic = false;  ///< Values that are not above 0 are left out.
   /// Ends of the axis; where one is not given, the values decide.
   std::optional<double> minimum = {}, maximum = {};
@@ -25,7 +25,7 @@ enum class ChartMark {
 
 /// Values that belong together. Those that are not finite are gaps.
 struct ChartSeries {
-  std::string name;  ///< In the legend; empty: not there.
+  std::string name;  ///< Name in the legend; empty: not there.
   std::vector<double> x, y;
   /// Ends of an interval around each y, or empty: a shaded band around lines and steps, error bars
   /// on points.
@@ -40,10 +40,10 @@ struct Chart {
   std::string title;
   ChartAxis x, y;
   std::vector<ChartSeries> series;
-  int width = 640, height = 420;  ///< Of the drawing, whose letters have a height of 12 to 16.
+  int width = 640, height = 420;  ///< Size of the drawing, whose letters have a height of 12 to 16.
 };
 
-/// One bar.
+/// One bar of a chart.
 struct ChartBar {
   std::string name;
   double value = 0;
@@ -57,7 +57,7 @@ struct BarChart {
   ChartAxis axis;  ///< Where it is logarithmic, bars begin at its left end.
   std::vector<ChartBar> bars;
   std::optional<double> mark_at = {};  ///< A line across all bars, such as 1 for "the same".
-  int width = 640;                     ///< Of the drawing.
+  int width = 640;                     ///< Width of the drawing.
   int height = 0;                      ///< 0: what its bars need.
 };
 

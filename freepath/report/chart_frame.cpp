@@ -43,12 +43,12 @@ void widen(const ChartAxis& axis, double& minimum, double& maximum) {
 void draw_grid_lines(SvgWriter& svg, const PlotAxis& axis, const SvgBox& plot, bool is_vertical) {
   svg.begin_ink("grid");
   for (const AxisTick& tick : axis.ticks) {
-    const double place = axis.place(tick.value);
+    const double position = axis.position(tick.value);
     const std::string_view attributes = tick.is_minor ? R"(stroke-opacity="0.45")" : "";
     if (is_vertical) {
-      svg.line(place, plot.top, place, plot.bottom, attributes);
+      svg.line(position, plot.top, position, plot.bottom, attributes);
     } else {
-      svg.line(plot.left, place, plot.right, place, attributes);
+      svg.line(plot.left, position, plot.right, position, attributes);
     }
   }
   svg.end_group();
@@ -92,7 +92,7 @@ AxisScale scale_of(const ChartAxis& axis, const AxisRange& range, AxisRoom room)
   return {minimum, maximum, axis.logarithmic};
 }
 
-double PlotAxis::place(double value) const {
+double PlotAxis::position(double value) const {
   constexpr double kReach = 20;  // lengths of the axis
   const double position = scale.position(value);
   if (std::isnan(position) || !std::isfinite(value)) return std::nan("");
@@ -118,7 +118,7 @@ void draw_bottom_axis(SvgWriter& svg, const PlotAxis& axis, const std::string& l
   svg.begin_ink("soft");
   svg.line(plot.left, plot.bottom, plot.right, plot.bottom);
   for (const AxisTick& tick : axis.ticks) {
-    const double x = axis.place(tick.value);
+    const double x = axis.position(tick.value);
     svg.line(x, plot.bottom, x, plot.bottom + (tick.is_minor ? 3 : 5));
     if (tick.label.text.empty()) continue;
     svg.label(x, plot.bottom + 19, TextAnchor::kMiddle, tick.label);
@@ -133,7 +133,7 @@ void draw_left_axis(SvgWriter& svg, const PlotAxis& axis, const std::string& lab
   svg.begin_ink("soft");
   svg.line(plot.left, plot.top, plot.left, plot.bottom);
   for (const AxisTick& tick : axis.ticks) {
-    const double y = axis.place(tick.value);
+    const double y = axis.position(tick.value);
     svg.line(plot.left - (tick.is_minor ? 3 : 5), y, plot.left, y);
     if (tick.label.text.empty()) continue;
     svg.label(plot.left - 9, y + 4, TextAnchor::kEnd, tick.label);

@@ -33,7 +33,7 @@ class AxisRange {
 
 /// How far an axis reaches beyond the values on its own accord.
 enum class AxisRoom {
-  kNone,   ///< Not at all.
+  kNone,   ///< No room.
   kLittle  ///< A few percent, to a round value where it is linear.
 };
 
@@ -50,7 +50,7 @@ struct PlotAxis {
 
   /// NaN where the value has no place, or is not finite. Kept within reach of the plot, so that
   /// lines to values far outside remain drawable.
-  double place(double value) const;
+  double position(double value) const;
 };
 
 /// The width of the widest label.

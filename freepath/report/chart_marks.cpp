@@ -54,12 +54,13 @@ std::string line_path(const ChartSeries& series, const PlotAxis& x, const PlotAx
   std::string path;
   const std::size_t count = series.y.size();
   const auto is_there = [&](std::size_t i) {
-    return i < count && std::isfinite(x.place(series.x[i])) && std::isfinite(y.place(series.y[i]));
+    return i < count && std::isfinite(x.position(series.x[i])) &&
+           std::isfinite(y.position(series.y[i]));
   };
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_there(i)) continue;
-    const double px = x.place(series.x[i]);
-    const double py = y.place(series.y[i]);
+    const double px = x.position(series.x[i]);
+    const double py = y.position(series.y[i]);
     const bool is_first = i == 0 || !is_there(i - 1);
     if (is_first && !is_there(i + 1)) {
       path += fmt::format("M{}h{}", point(px - kDot, py), coordinate(2 * kDot));
@@ -75,9 +76,9 @@ std::string step_path(const ChartSeries& series, const PlotAxis& x, const PlotAx
   std::string path;
   bool is_open = false;
   for (std::size_t i = 0; i < series.y.size(); ++i) {
-    const double left = x.place(series.x[i]);
-    const double right = x.place(series.x[i + 1]);
-    const double level = y.place(series.y[i]);
+    const double left = x.position(series.x[i]);
+    const double right = x.position(series.x[i + 1]);
+    const double level = y.position(series.y[i]);
     const bool is_there = std::isfinite(left) && std::isfinite(right) && std::isfinite(level);
     if (is_there) {
       path += is_open ? "V" + coordinate(level) : "M" + point(left, level);
@@ -89,9 +90,10 @@ std::string step_path(const ChartSeries& series, const PlotAxis& x, const PlotAx
 }
 
 /// The lower end of an interval may have no place on a logarithmic axis: it is below all others.
-double low_place(const PlotAxis& axis, double value) {
-  const double place = axis.place(value);
-  return std::isnan(place) && std::isfinite(value) ? axis.from + (axis.from - axis.to) : place;
+double low_position(const PlotAxis& axis, double value) {
+  const double position = axis.position(value);
+  return std::isnan(position) && std::isfinite(value) ? axis.from + (axis.from - axis.to)
+                                                      : position;
 }
 
 /// Corners of a piece of a band: there along the upper edge, back along the lower one.
@@ -119,12 +121,12 @@ std::string band_path(const ChartSeries& series, const PlotAxis& x, const PlotAx
   std::string path;
   BandPiece piece;
   for (std::size_t i = 0; i < series.y.size(); ++i) {
-    const double left = x.place(series.x[i]);
-    const double right = is_stepped ? x.place(series.x[i + 1]) : left;
-    const double low = low_place(y, series.low[i]);
-    const double high = y.place(series.high[i]);
+    const double left = x.position(series.x[i]);
+    const double right = is_stepped ? x.position(series.x[i + 1]) : left;
+    const double low = low_position(y, series.low[i]);
+    const double high = y.position(series.high[i]);
     const bool is_there = std::isfinite(left) && std::isfinite(right) && std::isfinite(low) &&
-                          std::isfinite(high) && std::isfinite(y.place(series.y[i]));
+                          std::isfinite(high) && std::isfinite(y.position(series.y[i]));
     if (!is_there) {
       path += piece.closed();
       continue;
@@ -140,11 +142,11 @@ void draw_error_bars(SvgWriter& svg, const ChartSeries& series, const PlotAxis& 
   constexpr double kCap = 3.5;
   std::string path;
   for (std::size_t i = 0; i < series.y.size(); ++i) {
-    const double px = x.place(series.x[i]);
-    const double low = low_place(y, series.low[i]);
-    const double high = y.place(series.high[i]);
+    const double px = x.position(series.x[i]);
+    const double low = low_position(y, series.low[i]);
+    const double high = y.position(series.high[i]);
     if (!std::isfinite(px) || !std::isfinite(low) || !std::isfinite(high) ||
-        !std::isfinite(y.place(series.y[i]))) {
+        !std::isfinite(y.position(series.y[i]))) {
       continue;
     }
     const std::string cap = coordinate(2 * kCap);
@@ -178,8 +180,8 @@ void draw_markers(SvgWriter& svg, const ChartSeries& series, const SeriesLook& l
                   const PlotAxis& x, const PlotAxis& y) {
   constexpr std::size_t kMostTitles = 400;  // beyond, they would only make the file large
   for (std::size_t i = 0; i < series.y.size(); ++i) {
-    const double px = x.place(series.x[i]);
-    const double py = y.place(series.y[i]);
+    const double px = x.position(series.x[i]);
+    const double py = y.position(series.y[i]);
     if (!std::isfinite(px) || !std::isfinite(py)) continue;
     draw_marker(svg, look, px, py,
                 series.y.size() <= kMostTitles ? marker_title(series, i) : std::string{});

@@ -29,7 +29,7 @@ struct PageCode {
 /// A cell of a table: what is shown, and what the column is sorted by.
 struct PageCell {
   std::string text;
-  double number = 0;      ///< To sort by, where the column is of numbers.
+  double number = 0;      ///< Key to sort by, where the column is of numbers.
   std::string note = {};  ///< Small, below the text: an interval, say; may be empty.
   enum class Tone { kPlain, kBest, kGood, kBad, kFaint } tone = Tone::kPlain;
 };
@@ -43,7 +43,7 @@ struct PageColumn {
 /// A table; a click on a column's name sorts it by that column.
 struct PageTable {
   std::vector<PageColumn> columns;
-  std::vector<std::vector<PageCell>> rows;  ///< As many cells as columns each.
+  std::vector<std::vector<PageCell>> rows;  ///< Rows, each of as many cells as there are columns.
   std::string caption = {};
 };
 

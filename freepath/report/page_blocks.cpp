@@ -35,9 +35,9 @@ std::string_view svg_element(const std::string& svg) {
 /// The width that a drawing has by itself, 0 where it says none.
 double svg_width(std::string_view svg) {
   constexpr std::string_view kAttribute = " width=\"";
-  const std::size_t place = svg.substr(0, svg.find('>')).find(kAttribute);
-  if (place == std::string_view::npos) return 0;
-  const char* begin = svg.data() + place + kAttribute.size();
+  const std::size_t offset = svg.substr(0, svg.find('>')).find(kAttribute);
+  if (offset == std::string_view::npos) return 0;
+  const char* begin = svg.data() + offset + kAttribute.size();
   double width = 0;
   std::from_chars(begin, svg.data() + svg.size(), width);
   return width;

@@ -154,7 +154,7 @@ inline constexpr std::string_view kPageScript = R"js(
       showView();
     };
     const reset = () => { Object.assign(view, {x: 0, y: 0, zoom: 1}); showView(); };
-    const placeOf = event => {
+    const positionOf = event => {
       const box = stage.getBoundingClientRect();
       return {x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height};
     };
@@ -174,8 +174,8 @@ inline constexpr std::string_view kPageScript = R"js(
     stage.addEventListener('wheel', event => {
       if (view.zoom === 1 && event.deltaY > 0) return;  // the page scrolls on
       event.preventDefault();
-      const place = placeOf(event);
-      zoomBy(Math.exp(-clamp(event.deltaY, -120, 120) / 400), place.x, place.y);
+      const position = positionOf(event);
+      zoomBy(Math.exp(-clamp(event.deltaY, -120, 120) / 400), position.x, position.y);
     }, {passive: false});
 
     // One pointer moves the seam or the pictures, two zoom.
@@ -183,15 +183,15 @@ inline constexpr std::string_view kPageScript = R"js(
     let moves = '';
     stage.addEventListener('pointerdown', event => {
       if (event.button !== 0) return;
-      pointers.set(event.pointerId, placeOf(event));
+      pointers.set(event.pointerId, positionOf(event));
       stage.setPointerCapture(event.pointerId);
       moves = event.target.closest('.handle') || view.zoom === 1 ? 'seam' : 'view';
       stage.classList.toggle('moving', moves === 'view');
     });
     stage.addEventListener('pointermove', event => {
-      const place = placeOf(event);
-      const pixel = {x: Math.floor((place.x - view.x) / view.zoom * width),
-                     y: Math.floor((place.y - view.y) / view.zoom * height)};
+      const position = positionOf(event);
+      const pixel = {x: Math.floor((position.x - view.x) / view.zoom * width),
+                     y: Math.floor((position.y - view.y) / view.zoom * height)};
       get('.where').textContent = `x\u2009=\u2009${pixel.x}, y\u2009=\u2009${pixel.y}`;
       const before = pointers.get(event.pointerId);
       if (!before) return;
@@ -199,16 +199,16 @@ inline constexpr std::string_view kPageScript = R"js(
         const other = [...pointers].find(([id]) => id !== event.pointerId)[1];
         const distance = point => Math.hypot((point.x - other.x) * width,
                                              (point.y - other.y) * height);
-        zoomBy(distance(place) / Math.max(distance(before), 1e-3), other.x, other.y);
+        zoomBy(distance(position) / Math.max(distance(before), 1e-3), other.x, other.y);
       } else if (moves === 'seam') {
-        seam.value = clamp(100 * place.x, 0, 100);
+        seam.value = clamp(100 * position.x, 0, 100);
         showSeam();
       } else {
-        view.x += place.x - before.x;
-        view.y += place.y - before.y;
+        view.x += position.x - before.x;
+        view.y += position.y - before.y;
         showView();
       }
-      pointers.set(event.pointerId, place);
+      pointers.set(event.pointerId, position);
     });
     const release = event => {
       pointers.delete(event.pointerId);

@@ -208,7 +208,7 @@ html:not(.js) .enlarge{cursor:auto}
 @media (prefers-reduced-motion:reduce){html{scroll-behavior:auto}}
 )css";
 
-/// On paper: no controls, all pictures, nothing scrolls or is cut in two.
+/// The style on paper: no controls, all pictures, nothing scrolls or is cut in two.
 inline constexpr std::string_view kPagePrintStyle = R"css(
 @page{size:A4;margin:13mm}
 .bar,.tools,.stage,.seam,.button,.enlarged{display:none!important}

@@ -14,7 +14,7 @@ namespace freepath {
 /// A level plane that reflects the same radiance to all directions.
 struct Ground {
   Rgb albedo{0.0F};
-  /// Along the axis that points up [world]; none: the bottom of all else.
+  /// Height along the axis that points up [world]; none: the bottom of all else.
   std::optional<double> height = {};
   UpAxis up = UpAxis::kY;
 };

@@ -24,7 +24,7 @@ struct VoxelRow {
   double offset = 0;         ///< Of the middle of voxel 0 [world].
   double low = 0, high = 0;  ///< Faces of the outermost active voxels [world].
 
-  double index_of(double place) const { return (place - offset) / step; }
+  double index_of(double position) const { return (position - offset) / step; }
 };
 
 /// @throws Error for voxels that are turned against the axis
@@ -97,7 +97,7 @@ std::optional<std::array<int, 2>> layers_at_sides(const std::string& name, const
 void copy_layer(const BrickMap& map, int axis, int source, int target, BrickMapBuilder& builder) {
   constexpr int kSize = BrickMap::kBrickSize;
   map.for_each_brick([&](const PlacedBrick& brick) {
-    const Vec3i first = brick.place * kSize;
+    const Vec3i first = brick.coord * kSize;
     if (source < first[axis] || source >= first[axis] + kSize) return;
     for (int i = 0; i < kSize; ++i) {
       for (int j = 0; j < kSize; ++j) {
@@ -120,22 +120,22 @@ BrickMap with_layers(const BrickMap& map, int axis, int first, int last) {
   Vec3i active_max = map.active_max();
   active_min[axis] = std::min(active_min[axis], first - 1);
   active_max[axis] = std::max(active_max[axis], last + 1);
-  std::unordered_map<uint32_t, std::size_t> places;
+  std::unordered_map<uint32_t, std::size_t> uses;
   std::size_t count = 0;
   map.for_each_brick([&](const PlacedBrick& brick) {
-    ++places[brick.brick];
+    ++uses[brick.brick];
     ++count;
   });
-  BrickMapBuilder builder(active_min, active_max, places.size() + count / 4, 2 * count + 1);
+  BrickMapBuilder builder(active_min, active_max, uses.size() + count / 4, 2 * count + 1);
   map.for_each_brick([&](const PlacedBrick& brick) {
     const auto values = map.voxels().subspan(std::size_t{brick.brick} * BrickMap::kBrickVoxels,
                                              BrickMap::kBrickVoxels);
     const bool is_constant = std::all_of(values.begin(), values.end(),
                                          [&](float value) { return value == values.front(); });
-    if (is_constant && places[brick.brick] > 1) {
-      builder.add_constant_brick(brick.place, values.front());
+    if (is_constant && uses[brick.brick] > 1) {
+      builder.add_constant_brick(brick.coord, values.front());
     } else {
-      std::copy(values.begin(), values.end(), builder.add_brick(brick.place).begin());
+      std::copy(values.begin(), values.end(), builder.add_brick(brick.coord).begin());
     }
   });
   copy_layer(map, axis, last, first - 1, builder);
@@ -179,11 +179,11 @@ void cut_out(ColorVoxels& colors, int axis, int begin, int count,
       for (at.y = 0; at.y < counts.y; ++at.y) {
         for (at.x = 0; at.x < counts.x; ++at.x) {
           Vec3i from = at;
-          int& place = from[axis];
-          place += begin;
-          if (place < period[0]) place += length;
-          if (place > period[1]) place -= length;
-          const bool is_one = place >= 0 && place < old[axis];
+          int& index = from[axis];
+          index += begin;
+          if (index < period[0]) index += length;
+          if (index > period[1]) index -= length;
+          const bool is_one = index >= 0 && index < old[axis];
           const std::size_t number =
               (static_cast<std::size_t>(from.z) * old.y + from.y) * old.x + from.x;
           result.push_back(is_one ? values[number] : none);

@@ -14,7 +14,7 @@ namespace freepath {
 /// Along which axes volumes repeat, and how long a period is.
 struct PeriodicSides {
   std::array<bool, 3> axes{};
-  /// From where to where, along the axes that repeat [world]; none: the bounds of all voxels
+  /// Extents along the axes that repeat [world]; none: the bounds of all voxels
   /// together, or of all else where there are none.
   std::optional<Box3d> extents = {};
 

@@ -125,8 +125,8 @@ std::vector<Field> generate_cloud(const ProceduralOptions& options) {
   const std::string names[] = {"density"};
   return sample_fields(
       shape, names,
-      [&](const BrickPlace& place, std::span<float> values) {
-        return sample_near(cloud.spheres, Cloud::kWarp, billows.outward(), shape, place, values,
+      [&](const BrickRegion& brick, std::span<float> values) {
+        return sample_near(cloud.spheres, Cloud::kWarp, billows.outward(), shape, brick, values,
                            [&](const Vec3f& point, const SphereUnion& near) {
                              return std::array{cloud.density(point, near)};
                            });

@@ -99,9 +99,9 @@ std::vector<Field> generate_fireball(const ProceduralOptions& options) {
   const std::string names[] = {"density", "temperature"};
   return sample_fields(
       shape, names,
-      [&](const BrickPlace& place, std::span<float> values) {
+      [&](const BrickRegion& brick, std::span<float> values) {
         return sample_near(
-            fireball.spheres, Fireball::kWarp, billows.outward(), shape, place, values,
+            fireball.spheres, Fireball::kWarp, billows.outward(), shape, brick, values,
             [&](const Vec3f& point, const SphereUnion& near) { return fireball.at(point, near); });
       },
       options.progress);

@@ -107,19 +107,19 @@ std::vector<Field> sample_fields(const GridShape& shape, std::span<const std::st
   const std::size_t total = std::size_t(counts.x) * slab;
   std::vector<BrickValues> values(total);
   Progress progress(report, total);
-  const auto place_of = [&](std::size_t i) {
+  const auto coord_of = [&](std::size_t i) {
     return Vec3i(static_cast<int>(i / slab), static_cast<int>(i % slab) / counts.z,
                  static_cast<int>(i % slab) % counts.z);
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, total, 16), [&](const auto& range) {
     std::vector<float> sampled(names.size() * kVoxels);
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      BrickPlace place;
-      place.first = place_of(i) * kSide;
-      place.centre = shape.centre(place.first) + Vec3f(3.5F * shape.voxel_size);
-      place.radius = 3.5F * std::sqrt(3.0F) * shape.voxel_size;
+      BrickRegion brick;
+      brick.first = coord_of(i) * kSide;
+      brick.centre = shape.centre(brick.first) + Vec3f(3.5F * shape.voxel_size);
+      brick.radius = 3.5F * std::sqrt(3.0F) * shape.voxel_size;
       std::ranges::fill(sampled, 0.0F);
-      if (!sampler(place, sampled)) continue;
+      if (!sampler(brick, sampled)) continue;
       values[i] = std::make_unique<float[]>(sampled.size());
       std::ranges::copy(sampled, values[i].get());
     }
@@ -128,7 +128,7 @@ std::vector<Field> sample_fields(const GridShape& shape, std::span<const std::st
 
   std::vector<Vec3i> bricks;
   for (std::size_t i = 0; i < total; ++i) {
-    if (values[i]) bricks.push_back(place_of(i));
+    if (values[i]) bricks.push_back(coord_of(i));
   }
   std::erase(values, nullptr);
   std::vector<Field> fields(names.size());

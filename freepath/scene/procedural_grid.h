@@ -27,15 +27,15 @@ inline constexpr float kLongestSide = 100;
 GridShape grid_over(const Box3f& box, int resolution);
 
 /// 8³ voxels to be sampled.
-struct BrickPlace {
+struct BrickRegion {
   Vec3i first;       ///< First voxel.
   Vec3f centre;      ///< World.
-  float radius = 0;  ///< Of the sphere around all its voxel centres [world].
+  float radius = 0;  ///< Radius of the sphere around all its voxel centres [world].
 };
 
 /// Fills the values of a brick, 512 for each field one after the other, zero at first. False: it is
 /// empty.
-using BrickSampler = std::function<bool(const BrickPlace&, std::span<float>)>;
+using BrickSampler = std::function<bool(const BrickRegion&, std::span<float>)>;
 
 /// Samples fields over a grid, bricks in parallel. Only bricks that hold something are stored.
 std::vector<Field> sample_fields(const GridShape& shape, std::span<const std::string> names,
@@ -47,12 +47,12 @@ std::vector<Field> sample_fields(const GridShape& shape, std::span<const std::st
 ///   is not above 0, nothing is kept
 /// @return whether anything was kept
 template <class Sample>
-bool sample_voxels(const GridShape& shape, const BrickPlace& place, std::span<float> values,
+bool sample_voxels(const GridShape& shape, const BrickRegion& brick, std::span<float> values,
                    Sample at) {
   bool any = false;
   for (std::size_t i = 0; i < BrickMap::kBrickVoxels; ++i) {
     const auto offset = static_cast<int>(i);
-    const Vec3i voxel = place.first + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
+    const Vec3i voxel = brick.first + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
     const auto found = at(shape.centre(voxel));
     if (!(found[0] > 0)) continue;
     for (std::size_t field = 0; field < found.size(); ++field) {
@@ -75,7 +75,7 @@ class SphereUnion {
 
   float distance(const Vec3f& point) const;
   Box3f bounds() const;
-  /// Those spheres that the distance may come from at some point within `radius` of `centre`.
+  /// The spheres that the distance may come from at some point within `radius` of `centre`.
   SphereUnion near(const Vec3f& centre, float radius) const;
   /// Moves and scales all spheres: centre · scale + offset.
   void transform(float scale, const Vec3f& offset);
@@ -84,16 +84,16 @@ class SphereUnion {
   std::vector<Sphere> spheres_;
 };
 
-/// As sample_voxels, for a shape that is made of spheres.
+/// Samples the voxels of a brick, for a shape that is made of spheres: see sample_voxels.
 /// @param warp how far points are pushed before their distance to the spheres is taken [world]
 /// @param outward how far the shape reaches beyond the spheres [world]
 /// @param at (point of the world, the spheres that matter there) → values
 template <class Sample>
 bool sample_near(const SphereUnion& spheres, float warp, float outward, const GridShape& shape,
-                 const BrickPlace& place, std::span<float> values, Sample at) {
-  const SphereUnion near = spheres.near(place.centre, place.radius + warp);
-  if (near.distance(place.centre) > place.radius + outward + warp) return false;
-  return sample_voxels(shape, place, values, [&](const Vec3f& point) { return at(point, near); });
+                 const BrickRegion& brick, std::span<float> values, Sample at) {
+  const SphereUnion near = spheres.near(brick.centre, brick.radius + warp);
+  if (near.distance(brick.centre) > brick.radius + outward + warp) return false;
+  return sample_voxels(shape, brick, values, [&](const Vec3f& point) { return at(point, near); });
 }
 
 }  // namespace freepath::procedural

@@ -25,7 +25,7 @@ float distance_to(const Vec3f& point, const Vec3f& centre) {
 }
 
 /// Two puffs in opposite corners of the cube; the seed chooses which.
-std::vector<Sphere> place_puffs(uint64_t seed) {
+std::vector<Sphere> puff_spheres(uint64_t seed) {
   constexpr float kRadius = 24;
   constexpr float kReach = kHalf - kRadius;
   const Vec3f corner((seed & 1) != 0 ? kReach : -kReach, -kReach,
@@ -45,8 +45,8 @@ std::vector<Field> generate_fog(const ProceduralOptions& options) {
   const std::array<std::string, 1> names = {"density"};
   return sample_fields(
       shape, names,
-      [&](const BrickPlace& place, std::span<float> values) {
-        return sample_voxels(shape, place, values, [&](const Vec3f& point) {
+      [&](const BrickRegion& brick, std::span<float> values) {
+        return sample_voxels(shape, brick, values, [&](const Vec3f& point) {
           const float noise = fractal_noise(point * 0.03F, 4, 0.5F, seed);
           return std::array<float, 1>{std::clamp(0.8F + 0.25F * noise, 0.55F, 1.0F)};
         });
@@ -63,9 +63,9 @@ std::vector<Field> generate_noise(const ProceduralOptions& options) {
   const Vec3f centre(0, kHalf, 0);
   return sample_fields(
       shape, names,
-      [&](const BrickPlace& place, std::span<float> values) {
-        if (distance_to(place.centre, centre) > kHalf + place.radius) return false;
-        return sample_voxels(shape, place, values, [&](const Vec3f& point) {
+      [&](const BrickRegion& brick, std::span<float> values) {
+        if (distance_to(brick.centre, centre) > kHalf + brick.radius) return false;
+        return sample_voxels(shape, brick, values, [&](const Vec3f& point) {
           if (distance_to(point, centre) > kHalf) return std::array<float, 1>{0};
           const Vec3f voxel = (point - shape.origin) / shape.voxel_size;
           const auto index = [](float value) { return static_cast<int>(std::lround(value)); };
@@ -80,13 +80,13 @@ std::vector<Field> generate_puffs(const ProceduralOptions& options) {
   using namespace procedural;
   const GridShape shape = grid_over(
       Box3f(Vec3f(-kHalf, 0, -kHalf), Vec3f(kHalf, kLongestSide, kHalf)), options.resolution);
-  const std::vector<procedural::Sphere> puffs = place_puffs(options.seed);
+  const std::vector<procedural::Sphere> puffs = puff_spheres(options.seed);
   const SphereUnion spheres(puffs);
   const std::array<std::string, 1> names = {"density"};
   return sample_fields(
       shape, names,
-      [&](const BrickPlace& place, std::span<float> values) {
-        return sample_near(spheres, 0, 0, shape, place, values,
+      [&](const BrickRegion& brick, std::span<float> values) {
+        return sample_near(spheres, 0, 0, shape, brick, values,
                            [](const Vec3f& point, const SphereUnion& near) {
                              constexpr float kDepth = 3;  // at which a puff is as dense as it gets
                              const float inside = -near.distance(point) / kDepth;

@@ -37,12 +37,12 @@ class CoarseFlow {
   }
 
   Vec3f operator()(const Vec3f& point) const {
-    const Vec3f place = (point - origin_) / spacing_;
+    const Vec3f position = (point - origin_) / spacing_;
     int base[3];
     float part[3];
     for (int axis = 0; axis < 3; ++axis) {
-      base[axis] = std::clamp(static_cast<int>(place[axis]), 0, counts_[axis] - 2);
-      part[axis] = std::clamp(place[axis] - static_cast<float>(base[axis]), 0.0F, 1.0F);
+      base[axis] = std::clamp(static_cast<int>(position[axis]), 0, counts_[axis] - 2);
+      part[axis] = std::clamp(position[axis] - static_cast<float>(base[axis]), 0.0F, 1.0F);
     }
     Vec3f sum(0);
     for (int corner = 0; corner < 8; ++corner) {
@@ -130,8 +130,8 @@ std::vector<Field> generate_smoke(const ProceduralOptions& options) {
   const std::string names[] = {"density"};
   return sample_fields(
       shape, names,
-      [&](const BrickPlace& place, std::span<float> values) {
-        return sample_voxels(shape, place, values,
+      [&](const BrickRegion& brick, std::span<float> values) {
+        return sample_voxels(shape, brick, values,
                              [&](const Vec3f& point) { return std::array{smoke.density(point)}; });
       },
       options.progress);

@@ -23,14 +23,14 @@ struct SkyEnvironment {};
 struct LightOptions {
   /// The sky, one radiance, or the name of a latitude-longitude image.
   std::variant<SkyEnvironment, Rgb, std::string> environment = SkyEnvironment{};
-  InvalidPolicy invalid = InvalidPolicy::kZero;  ///< For pixels of the image.
+  InvalidPolicy invalid = InvalidPolicy::kZero;  ///< Policy for pixels of the image.
   bool sun = true;  ///< Whether its disc shines; it shapes the sky in any case.
   SunParameters sun_parameters{.elevation = 38, .azimuth = 255};
 };
 
 /// What shines on a volume from everywhere around.
 struct Surroundings {
-  /// The same radiance from everywhere, in linear sRGB, or an image; none: nothing.
+  /// Radiance that is the same from everywhere, in linear sRGB, or an image; none: nothing.
   std::optional<std::variant<Rgb, ImageEnvironment>> environment = {};
   std::optional<Sun> sun = {};
 };

@@ -26,8 +26,8 @@ struct OpticalProperties {
 
 /// Densities with one set of optical properties.
 struct Volume {
-  /// One, which acts on all channels, or those of R, G and B, each of which acts on its channel
-  /// alone.
+  /// One density, which acts on all channels, or those of R, G and B, each of which acts on its
+  /// channel alone.
   std::vector<Field> densities;
   OpticalProperties optics;
   /// Temperatures, where it glows as black bodies of them (TemperatureEmission).

@@ -16,8 +16,8 @@ namespace {
 /// all that their convex hull needs [world].
 void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
   const BrickMap& map = field.voxels;
-  const auto add_brick = [&](const Vec3i& place) {
-    const Vec3i first = place * BrickMap::kBrickSize;
+  const auto add_brick = [&](const Vec3i& coord) {
+    const Vec3i first = coord * BrickMap::kBrickSize;
     for (int corner = 0; corner < 8; ++corner) {
       Vec3d point;
       for (int axis = 0; axis < 3; ++axis) {
@@ -31,12 +31,12 @@ void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
   };
   std::optional<Vec3i> last;  // of the row so far
   map.for_each_brick([&](const PlacedBrick& placed) {
-    const Vec3i& place = placed.place;
-    if (!last || last->x != place.x || last->y != place.y) {
+    const Vec3i& coord = placed.coord;
+    if (!last || last->x != coord.x || last->y != coord.y) {
       if (last) add_brick(*last);
-      add_brick(place);
+      add_brick(coord);
     }
-    last = place;
+    last = coord;
   });
   if (last) add_brick(*last);
 }

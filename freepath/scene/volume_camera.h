@@ -14,7 +14,7 @@ namespace freepath {
 /// The kinds of camera that need no more than a view.
 enum class CameraKind {
   kPerspective,
-  kOrthographic,  ///< Of the extent that the perspective one has where it looks at.
+  kOrthographic,  ///< Parallel rays, over the perspective camera's extent where it looks at.
   kSpherical      ///< Everything around, the target in the middle, the horizon level.
 };
 
@@ -24,7 +24,7 @@ struct CameraOptions {
   int width = 640;
   int height = 360;
   double fov = 40;  ///< Vertical [degrees].
-  /// Of the camera as seen from what it frames [degrees].
+  /// Elevation of the camera as seen from what it frames [degrees].
   double elevation = kFramingElevation;
   std::optional<Vec3d> from = {};  ///< [world]
   std::optional<Vec3d> at = {};    ///< [world]

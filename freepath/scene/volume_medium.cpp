@@ -86,14 +86,14 @@ constexpr double kLargestOpticalDepth = 4e6;
 
 /// Length across a part of a medium [world].
 double length_of(const Medium& medium, const WalkPart& part) {
-  const Matrix4d to_world = medium.world_to_place().inverse();
+  const Matrix4d to_world = medium.world_to_grid().inverse();
   Box3d box;
   for (int corner = 0; corner < 8; ++corner) {
-    Vec3d place;
+    Vec3d position;
     for (int axis = 0; axis < 3; ++axis) {
-      place[axis] = (corner >> axis & 1) != 0 ? part.box.end[axis] : part.box.begin[axis];
+      position[axis] = (corner >> axis & 1) != 0 ? part.box.end[axis] : part.box.begin[axis];
     }
-    box.extendBy(place * to_world);
+    box.extendBy(position * to_world);
   }
   return std::min(box.size().length(), medium.world_bounds().size().length());
 }

@@ -15,9 +15,9 @@ namespace freepath {
 
 /// Volumes as one medium.
 struct VolumeMedium {
-  std::shared_ptr<const Medium> medium;  ///< With coefficients in R, G and B (linear sRGB).
-  /// Of its components, in their order, those that glow as black bodies; what the components emit
-  /// multiplies that. May be shorter.
+  std::shared_ptr<const Medium> medium;  ///< Medium with coefficients in R, G and B (linear sRGB).
+  /// Temperatures of its components, in their order, where they glow as black bodies; what the
+  /// components emit multiplies that. May be shorter.
   std::vector<std::optional<TemperatureEmission>> temperatures = {};
   /// What repeats, if anything does: along which axes, and from where to where [world].
   PeriodicSides sides = {};

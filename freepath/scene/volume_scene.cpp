@@ -46,7 +46,7 @@ PathScene make_volume_scene(const VolumeMedium& medium, const std::optional<Came
   if (ground) {
     const Box3d& bounds = scene.media[0].bounds();
     SurfaceScene surfaces;
-    add_ground(*ground, bounds, camera ? camera->place() : bounds.center(), scene, surfaces);
+    add_ground(*ground, bounds, camera ? camera->position() : bounds.center(), scene, surfaces);
     scene.surfaces.emplace(surfaces, scene.origin);
     scene.is_clear[0] = !scene.surfaces->intersects_box(std::vector<uint32_t>{0}, bounds);
   }

@@ -117,7 +117,7 @@ class Camera {
   CameraRay ray(float film_x, float film_y, float lens_u = 0.5F, float lens_v = 0.5F) const;
 
   /// Where the ray through the middle of the film begins [world].
-  Vec3d place() const {
+  Vec3d position() const {
     return ray(0.5F * static_cast<float>(width_), 0.5F * static_cast<float>(height_)).origin;
   }
 

@@ -26,29 +26,29 @@ float to_float(double value) {
 
 }  // namespace
 
-Film::SumPlaces Film::places_of(LayerSet layers, int& count) {
-  SumPlaces places;
-  places.fill(-1);
+Film::SumOffsets Film::offsets_of(LayerSet layers, int& count) {
+  SumOffsets offsets;
+  offsets.fill(-1);
   count = 0;
-  const auto place = [&](Sum sum, bool wanted) {
+  const auto reserve = [&](Sum sum, bool wanted) {
     if (!wanted) return;
-    places[sum] = count;
+    offsets[sum] = count;
     count += kChannels;
   };
   const bool light = layers.has_any(kLightLayers);
-  place(kNormal, layers.has(Layer::kNormal));
-  place(kPosition, layers.has(Layer::kPosition));
-  place(kTransmittance, layers.has(Layer::kTransmittance));
-  place(kBackground, light);
-  place(kUnscattered, light);
-  place(kAtMostOnce, light);
-  place(kEven, layers.has(Layer::kHalves));
-  return places;
+  reserve(kNormal, layers.has(Layer::kNormal));
+  reserve(kPosition, layers.has(Layer::kPosition));
+  reserve(kTransmittance, layers.has(Layer::kTransmittance));
+  reserve(kBackground, light);
+  reserve(kUnscattered, light);
+  reserve(kAtMostOnce, light);
+  reserve(kEven, layers.has(Layer::kHalves));
+  return offsets;
 }
 
 std::size_t Film::bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets) {
   int sums = 0;
-  places_of(layers, sums);
+  offsets_of(layers, sums);
   return sizeof(Pixel) + sums * (sizeof(Sum2::Array) + 1) + buckets.count * sizeof(BucketSum);
 }
 
@@ -59,7 +59,7 @@ Film::Film(const PixelWindow& window, LayerSet layers, const WavelengthBuckets& 
     fail("the film has {}x{} pixels; it needs at least 1x1", window.width, window.height);
   }
   pixels_.resize(static_cast<std::size_t>(window.width) * window.height);
-  places_ = places_of(layers, sums_per_pixel_);
+  offsets_ = offsets_of(layers, sums_per_pixel_);
   sums_.resize(pixels_.size() * sums_per_pixel_);
   sum_tops_.resize(sums_.size(), Sum2::kEmpty);
   bucket_sums_.resize(pixels_.size() * buckets.count);
@@ -71,16 +71,16 @@ double Film::Pixel::square(int channel) const {
 }
 
 void Film::add_to(std::size_t pixel, Sum which, const Rgb& value) {
-  if (places_[which] < 0) return;
-  const std::size_t first = pixel * sums_per_pixel_ + places_[which];
+  if (offsets_[which] < 0) return;
+  const std::size_t first = pixel * sums_per_pixel_ + offsets_[which];
   for (int channel = 0; channel < kChannels; ++channel) {
     Sum2::add(sums_[first + channel], sum_tops_[first + channel], value[channel]);
   }
 }
 
 double Film::sum_of(std::size_t pixel, Sum which, int channel) const {
-  const std::size_t place = pixel * sums_per_pixel_ + places_[which] + channel;
-  return Sum2::value(sums_[place], sum_tops_[place]);
+  const std::size_t index = pixel * sums_per_pixel_ + offsets_[which] + channel;
+  return Sum2::value(sums_[index], sum_tops_[index]);
 }
 
 void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample) {

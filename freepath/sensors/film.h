@@ -36,8 +36,8 @@ struct LayerSample {
   Rgb position{0.0F};       ///< Times depth_weight [world].
   Rgb transmittance{0.0F};  ///< 0 of a path that ended in a medium.
   // Parts of the radiance, each with the one before.
-  Rgb background{0.0F};    ///< From outside, not scattered.
-  Rgb unscattered{0.0F};   ///< From wherever, not scattered.
+  Rgb background{0.0F};    ///< Light from outside, not scattered.
+  Rgb unscattered{0.0F};   ///< Light from anywhere, not scattered.
   Rgb at_most_once{0.0F};  ///< Scattered at most once.
 
   /// Adds what another channel's path of the same sample has found.
@@ -84,7 +84,8 @@ class Film {
   uint32_t first_sample() const { return first_sample_; }
   static std::size_t bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets = {});
 
-  /// Of the space of R, G and B; sRGB's where none are set. Its pictures carry them.
+  /// Sets the primaries of the space of R, G and B; sRGB's where none are set. Its pictures carry
+  /// them.
   void set_chromaticities(const std::optional<RgbChromaticities>& chromaticities) {
     chromaticities_ = chromaticities;
   }
@@ -143,7 +144,7 @@ class Film {
   /// After them come the buckets of wavelengths, if there are any: the mean over what came into
   /// each, 0 where nothing did.
   Image to_image() const { return to_image(layers_); }
-  /// With these layers alone, of those that it has.
+  /// The picture with these layers alone, of those that it has.
   Image to_image(LayerSet layers) const;
 
   /// Blocks of memory that hold its sums, always the same ones in the same order for films of the
@@ -184,16 +185,16 @@ class Film {
     return tops;
   }
 
-  /// Of three channels each, in sums_.
+  /// Sums of three channels each, in sums_.
   enum Sum { kNormal, kPosition, kTransmittance, kBackground, kUnscattered, kAtMostOnce, kEven };
   static constexpr int kSums = 7;
   /// Where a pixel has its sums; -1: nowhere.
-  using SumPlaces = std::array<int, kSums>;
-  static SumPlaces places_of(LayerSet layers, int& count);
+  using SumOffsets = std::array<int, kSums>;
+  static SumOffsets offsets_of(LayerSet layers, int& count);
 
   void add_layers(std::size_t pixel, const LayerSample& sample);
   void add_to(std::size_t pixel, Sum which, const Rgb& value);
-  /// Of a sum that has a place.
+  /// Value of a sum that the film has.
   double sum_of(std::size_t pixel, Sum which, int channel) const;
   void put_layer(Layer layer, std::size_t pixel, std::vector<float>& values) const;
   template <class Self, class Bytes>
@@ -205,11 +206,11 @@ class Film {
   uint32_t first_sample_ = 0;
   std::vector<Pixel> pixels_;
   int sums_per_pixel_ = 0;
-  SumPlaces places_{};
+  SumOffsets offsets_{};
   std::vector<Sum2::Array> sums_;
   std::vector<int8_t> sum_tops_;
   WavelengthBuckets buckets_;
-  /// Of a bucket of a pixel.
+  /// Sum of a bucket of a pixel.
   struct BucketSum {
     Sum2::Array radiance = {};
     uint32_t samples = 0;

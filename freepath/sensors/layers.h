@@ -15,11 +15,11 @@ enum class Layer : uint8_t {
   kAlbedo,         ///< Mean albedo at the first event, 0 of paths without one.
   kDepth,          ///< Distance to the first event [world].
   kLookups,        ///< Mean number of look-ups of a path.
-  kVariance,       ///< Of the mean of R, G, B.
+  kVariance,       ///< Variance of the mean of R, G, B.
   kSamples,        ///< Number of samples.
   kNormal,         ///< Mean shading normal of the first surface, or direction to the camera.
   kPosition,       ///< Mean position of the first event [world].
-  kTransmittance,  ///< Of media, along the camera ray to the first surface or out.
+  kTransmittance,  ///< Transmittance of media, along the camera ray to the first surface or out.
   kEmission,       ///< Light of media and surfaces seen without a scattering.
   kBackground,     ///< Light from outside seen without a scattering.
   kDirect,         ///< Light after one scattering.
@@ -58,7 +58,7 @@ class LayerSet {
   constexpr bool has(Layer layer) const { return (bits_ & bit(layer)) != 0; }
   /// Whether it has any of these.
   constexpr bool has_any(LayerSet layers) const { return (bits_ & layers.bits_) != 0; }
-  /// With these too.
+  /// This set and another together.
   constexpr LayerSet with(LayerSet layers) const {
     layers.bits_ |= bits_;
     return layers;

@@ -137,7 +137,7 @@ double PixelFilter::Axis::evaluate(double x) const {
   return distance <= radius ? scale * shape_of(model, distance, radius) : 0;
 }
 
-PixelFilter::Place PixelFilter::Axis::sample(float u) const {
+PixelFilter::AxisSample PixelFilter::Axis::sample(float u) const {
   if (is_box) return {static_cast<float>(radius) * (2 * u - 1), 1};
   const double side = 2 * static_cast<double>(u) - 1;
   const double target = std::abs(side);
@@ -162,8 +162,8 @@ PixelFilter::PixelFilter(const FilterModel& model)
       y_(model, std::visit([](const auto& filter) { return filter.y_radius; }, model)) {}
 
 FilterSample PixelFilter::sample(float u0, float u1) const {
-  const Place x = x_.sample(u0);
-  const Place y = y_.sample(u1);
+  const AxisSample x = x_.sample(u0);
+  const AxisSample y = y_.sample(u1);
   return {x.x, y.x, x.weight * y.weight};
 }
 

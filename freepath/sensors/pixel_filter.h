@@ -43,7 +43,7 @@ using FilterModel =
 
 /// Where to take a sample of a pixel, and what it counts.
 struct FilterSample {
-  float x, y;    ///< From the pixel's centre [pixels].
+  float x, y;    ///< Offset from the pixel's centre [pixels].
   float weight;  ///< f / density; 1 on average.
 };
 
@@ -69,7 +69,7 @@ class PixelFilter {
   double y_radius() const { return y_.radius; }
 
  private:
-  struct Place {
+  struct AxisSample {
     float x;
     float weight;
   };
@@ -77,7 +77,7 @@ class PixelFilter {
   struct Axis {
     Axis(const FilterModel& filter, double reach);
     double evaluate(double x) const;
-    Place sample(float u) const;
+    AxisSample sample(float u) const;
 
     FilterModel model;
     double radius;

@@ -8,9 +8,9 @@ namespace freepath {
 
 /// A rectangle of pixels in a picture; row 0 is the top.
 struct PixelWindow {
-  int x = 0, y = 0;                     ///< Of its first pixel in the picture.
-  int width = 0, height = 0;            ///< Its own.
-  int full_width = 0, full_height = 0;  ///< Of the picture.
+  int x = 0, y = 0;                     ///< Position of its first pixel in the picture.
+  int width = 0, height = 0;            ///< Size of the window.
+  int full_width = 0, full_height = 0;  ///< Size of the picture.
 
   static constexpr PixelWindow whole(int width, int height) {
     return {0, 0, width, height, width, height};
@@ -31,7 +31,7 @@ struct PixelWindow {
 /// What to cut out of a picture whose size may not be known yet: from (x0, y0) to before (x1, y1).
 struct Crop {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  bool fractions = false;  ///< Of width and height, else in pixels.
+  bool fractions = false;  ///< Whether in fractions of width and height, else in pixels.
 };
 
 /// The pixels that a crop leaves: fractions begin and end at the next whole pixel, as in pbrt.

@@ -7,9 +7,9 @@ namespace freepath {
 
 Vec3d color_matching(double wavelength) {
   if (!(wavelength >= kShortestWavelength && wavelength <= kLongestWavelength)) return Vec3d(0);
-  const double place = wavelength - kShortestWavelength;
-  const std::size_t left = std::min(static_cast<std::size_t>(place), kCie1931Table.size() - 2);
-  const double share = place - static_cast<double>(left);
+  const double position = wavelength - kShortestWavelength;
+  const std::size_t left = std::min(static_cast<std::size_t>(position), kCie1931Table.size() - 2);
+  const double share = position - static_cast<double>(left);
   const auto& [x0, y0, z0] = kCie1931Table[left];
   const auto& [x1, y1, z1] = kCie1931Table[left + 1];
   return {x0 + share * (x1 - x0), y0 + share * (y1 - y0), z0 + share * (z1 - z0)};

@@ -108,7 +108,7 @@ const LightTable::Cell* LightTable::make_cell(int largest, int column, int row) 
   return present;
 }
 
-inline LightTable::Place LightTable::place_of(const Vec3f& rgb, float size) const {
+inline LightTable::CellPoint LightTable::point_of(const Vec3f& rgb, float size) const {
   // Of equal components the last is the largest, as in ReflectanceTable.
   const int largest = rgb.z >= size ? 2 : rgb.y >= size ? 1 : 0;
   const float scale = kCells / size;
@@ -127,18 +127,18 @@ LightTable::Light LightTable::light(const Vec3f& rgb) const {
   const float size = std::max({rgb.x, rgb.y, rgb.z});
   if (size < kBlack) return {};
   if (is_grey(rgb)) return {2 * size, {}};
-  const Place place = place_of(rgb, size);
-  return {2 * size, place.cell->polynomial(place.x, place.y)};
+  const CellPoint at = point_of(rgb, size);
+  return {2 * size, at.cell->polynomial(at.x, at.y)};
 }
 
 Vec3f LightTable::seen(const Vec3f& rgb) const {
   const float size = std::max({rgb.x, rgb.y, rgb.z});
   if (size < kBlack) return Vec3f(0);
   if (is_grey(rgb)) return rgb;
-  const Place place = place_of(rgb, size);
-  const float x = place.x;
-  const float y = place.y;
-  const auto& c = place.cell->colours;
+  const CellPoint at = point_of(rgb, size);
+  const float x = at.x;
+  const float y = at.y;
+  const auto& c = at.cell->colours;
   std::array<float, 4> sum;
   for (std::size_t i = 0; i < 4; ++i) {
     sum[i] = c[0][i] + (c[1][i] + c[3][i] * y + c[4][i] * x) * x + (c[2][i] + c[5][i] * y) * y;

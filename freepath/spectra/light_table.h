@@ -50,12 +50,12 @@ class LightTable {
  private:
   struct Cell;
   /// Where a colour is: in a cell, at x and y in [0, 1].
-  struct Place {
+  struct CellPoint {
     const Cell* cell;
     float x, y;
   };
 
-  Place place_of(const Vec3f& rgb, float size) const;
+  CellPoint point_of(const Vec3f& rgb, float size) const;
   const Cell* make_cell(int largest, int column, int row) const;
   void set_colours(Cell& cell) const;
 

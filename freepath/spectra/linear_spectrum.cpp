@@ -34,18 +34,18 @@ struct Number {
 std::vector<Number> read_numbers(std::string_view text, std::string_view source) {
   std::vector<Number> numbers;
   int line = 1;
-  std::size_t place = 0;
-  while (place < text.size()) {
-    if (is_space(text[place])) {
-      if (text[place] == '\n') ++line;
-      ++place;
-    } else if (text[place] == '#') {
-      place = std::min(text.find('\n', place), text.size());
+  std::size_t offset = 0;
+  while (offset < text.size()) {
+    if (is_space(text[offset])) {
+      if (text[offset] == '\n') ++line;
+      ++offset;
+    } else if (text[offset] == '#') {
+      offset = std::min(text.find('\n', offset), text.size());
     } else {
-      std::size_t end = place;
+      std::size_t end = offset;
       while (end < text.size() && !is_space(text[end]) && text[end] != '#') ++end;
-      std::string_view word = text.substr(place, end - place);
-      place = end;
+      std::string_view word = text.substr(offset, end - offset);
+      offset = end;
       const std::string_view written = word.substr(0, 40);
       if (word.starts_with('+')) word.remove_prefix(1);
       double value = 0;
@@ -91,8 +91,8 @@ double LinearSpectrum::operator()(double wavelength) const {
   if (!(wavelength > wavelengths.front())) return values.front();
   std::size_t right = 0;
   if (samples_->inverse_step > 0) {
-    const double place = (wavelength - wavelengths.front()) * samples_->inverse_step;
-    right = std::min(static_cast<std::size_t>(place) + 1, wavelengths.size() - 1);
+    const double position = (wavelength - wavelengths.front()) * samples_->inverse_step;
+    right = std::min(static_cast<std::size_t>(position) + 1, wavelengths.size() - 1);
   } else {
     right = static_cast<std::size_t>(std::ranges::upper_bound(wavelengths, wavelength) -
                                      wavelengths.begin());

@@ -41,7 +41,7 @@ class ReflectanceTable {
  private:
   struct Node {
     int largest;        ///< Which component is.
-    int slice;          ///< Of level().
+    int slice;          ///< Index as of level().
     int second, third;  ///< The components that follow, in 63rds of the largest.
   };
 

@@ -31,9 +31,9 @@ std::array<Vec3d, RgbColorSpace::kNodes> reflectance_weights_of(const LinearSpec
   for (std::size_t i = 0; i < kObserverNodes; ++i) {
     const double wavelength = observer_node(i);
     const Vec3d rgb = observer_weight(i) * illuminant(wavelength) * xyz_to_rgb;
-    const double place = (wavelength - kShortestWavelength) / RgbColorSpace::kNodeDistance;
-    const auto left = std::min(static_cast<std::size_t>(place), weights.size() - 2);
-    const double share = place - static_cast<double>(left);
+    const double position = (wavelength - kShortestWavelength) / RgbColorSpace::kNodeDistance;
+    const auto left = std::min(static_cast<std::size_t>(position), weights.size() - 2);
+    const double share = position - static_cast<double>(left);
     weights[left] += rgb * (1 - share);
     weights[left + 1] += rgb * share;
   }

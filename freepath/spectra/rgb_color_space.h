@@ -38,7 +38,7 @@ class RgbColorSpace {
   const std::string& name() const { return name_; }
   const RgbPrimaries& primaries() const { return primaries_; }
   const Chromaticity& white() const { return white_; }
-  /// With a luminance of 1.
+  /// Illuminant of the space, with a luminance of 1.
   const LinearSpectrum& illuminant() const { return illuminant_; }
 
   Vec3d to_xyz(const Vec3d& rgb) const { return rgb * rgb_to_xyz_; }

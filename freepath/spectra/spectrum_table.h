@@ -65,7 +65,7 @@ class SpectrumValues {
     return rgb;
   }
 
-  /// One channel of a spectrum that is in no table.
+  /// Value of one channel of a spectrum that is in no table.
   float value_of(const SpectralDistribution& spectrum, SpectrumRole role, int channel) const;
   /// R, G, B of the table's space.
   Vec3d rgb_of_xyz(const Vec3d& xyz) const { return space_->from_xyz(xyz); }
@@ -111,20 +111,20 @@ class SpectrumTable {
   /// Whether an index of refraction has the same value at all wavelengths.
   bool is_constant(SpectrumId id) const;
 
-  /// In R, G, B, where a colour is exactly what it was given as.
+  /// Values in R, G, B, where a colour is exactly what it was given as.
   SpectrumValues in_rgb() const;
-  /// In R, G, B as the observer sees the spectra that `at` gives: their means over wavelengths,
-  /// which differ from the given colours by what the table of spectra interpolates.
+  /// Values in R, G, B as the observer sees the spectra that `at` gives: their means over
+  /// wavelengths, which differ from the given colours by what the table of spectra interpolates.
   SpectrumValues seen_in_rgb() const;
-  /// At wavelengths.
+  /// Values at wavelengths.
   SpectrumValues at(const PathWavelengths& wavelengths) const;
 
  private:
   struct Entry {
     SpectralDistribution spectrum;
     SpectrumRole role = SpectrumRole::kReflectance;
-    SampledSpectrum rgb;   ///< As given.
-    SampledSpectrum seen;  ///< As the spectrum is seen.
+    SampledSpectrum rgb;   ///< Colour as given.
+    SampledSpectrum seen;  ///< Colour as the spectrum is seen.
   };
 
   const RgbColorSpace& space_;

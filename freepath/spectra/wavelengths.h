@@ -13,7 +13,7 @@ namespace freepath {
 /// How a wavelength is drawn.
 enum class WavelengthDensity {
   kUniform,
-  kVisible,  ///< In proportion to sech²(0.0072 (λ - 538 nm)) [Radziszewski09].
+  kVisible,  ///< Density in proportion to sech²(0.0072 (λ - 538 nm)) [Radziszewski09].
 };
 
 /// Probability per nanometre of drawing a wavelength [1/nm]; its integral over the rendered
@@ -28,7 +28,7 @@ template <std::size_t kMost>
 struct Wavelengths {
   std::size_t count = 0;
   std::array<double, kMost> lambda{};  ///< [nm]; the first is the hero.
-  std::array<double, kMost> pdf{};     ///< Of each alone [1/nm].
+  std::array<double, kMost> pdf{};     ///< Density of each alone [1/nm].
 };
 
 /// A hero wavelength drawn by u, and the others at equal distances of probability from it, going

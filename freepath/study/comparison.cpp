@@ -206,9 +206,9 @@ void Experiment::get_references() {
   std::optional<std::size_t> trilinear;
   for (const Configuration& configuration : configurations_) {
     const bool is_nearest = configuration.interpolation == Interpolation::kNearest;
-    std::optional<std::size_t>& place = is_nearest ? nearest : trilinear;
-    if (!place) {
-      place = result_.references.size();
+    std::optional<std::size_t>& index = is_nearest ? nearest : trilinear;
+    if (!index) {
+      index = result_.references.size();
       Configuration standard;
       if (is_nearest) standard.interpolation = Interpolation::kNearest;
       if (nearest && trilinear && !settings_.reference.file.empty()) {
@@ -217,11 +217,11 @@ void Experiment::get_references() {
             "fields differ",
             settings_.reference.file);
       }
-      result_.references.push_back(*place < settings_.references.size()
-                                       ? settings_.references[*place]
+      result_.references.push_back(*index < settings_.references.size()
+                                       ? settings_.references[*index]
                                        : reference_by_plan(standard));
     }
-    result_.reference_of.push_back(*place);
+    result_.reference_of.push_back(*index);
   }
 }
 

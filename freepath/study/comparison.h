@@ -20,55 +20,57 @@ namespace freepath {
 /// the runs.
 struct ComparisonSettings {
   std::vector<Configuration> configurations;
-  /// Of a configuration in all, shared evenly by its repeats: seconds, samples of each pixel, or
-  /// both, whichever ends first. 0: unlimited.
+  /// Time of a configuration in all, shared evenly by its repeats: seconds, samples of each pixel,
+  /// or both, whichever ends first. 0: unlimited.
   double time = 10;
   uint32_t samples = 0;
   /// Runs methods that refuse stochastic interpolation with trilinear one, whose field is the same.
   bool may_interpolate = false;
   int repeats = 5;  ///< Independent runs of each configuration.
-  /// Of the repeats those to run, a part that merge_rounds() puts together with others: from
-  /// first_round to before end_round, 0: to the last.
+  /// Repeats to run, a part that merge_rounds() puts together with others: from first_round to
+  /// before end_round, 0: to the last.
   int first_round = 0, end_round = 0;
-  uint64_t seed = 0;    ///< Of all runs; each gets one of its own.
+  uint64_t seed = 0;    ///< Seed of all runs; each gets one of its own.
   double level = 1e-3;  ///< Probability that any of all bias tests raises a false alarm.
   RenderSettings render;
   ReferencePlan reference;
-  /// Those that references_of() has returned; empty: they are made by the plan.
+  /// References that references_of() has returned; empty: they are made by the plan.
   std::vector<Reference> references = {};
 };
 
 /// Error of a run as it went on.
 struct ConvergencePoint {
-  uint32_t samples = 0;  ///< Of each pixel.
+  uint32_t samples = 0;  ///< Samples of each pixel.
   double seconds = 0;
   double mse = 0;
 };
 
 /// What one run did.
 struct ComparisonRun {
-  double seconds = 0;           ///< Of the wall's clock.
-  double cpu_seconds = 0;       ///< Of all threads of the process.
-  uint32_t samples = 0;         ///< Of the pixel that has the fewest.
-  uint64_t camera_samples = 0;  ///< Of all pixels; one is what an estimate of all channels takes.
-  uint64_t overflows = 0;       ///< RenderResult::overflows
+  double seconds = 0;      ///< Time by the wall's clock.
+  double cpu_seconds = 0;  ///< Time of all threads of the process.
+  uint32_t samples = 0;    ///< Samples of the pixel that has the fewest.
+  /// Samples of all pixels; one is what an estimate of all channels takes.
+  uint64_t camera_samples = 0;
+  uint64_t overflows = 0;  ///< RenderResult::overflows
   WalkStatistics free_paths, shadow_rays;
   SquaredError error;
-  std::array<double, 3> variance = {};  ///< Of a pixel, over all pixels, by its own samples.
-  double flip = 0;                      ///< Mean over pixels.
+  /// Variance of a pixel, over all pixels, by its own samples.
+  std::array<double, 3> variance = {};
+  double flip = 0;  ///< Mean over pixels.
   std::vector<ConvergencePoint> convergence;
 };
 
 /// What came of a configuration.
 struct ConfigurationResult {
   Configuration configuration;
-  std::string name;        ///< As short as tells it from the others.
-  bool is_biased = false;  ///< By its own account.
+  std::string name;        ///< Name as short as tells it from the others.
+  bool is_biased = false;  ///< Whether it says so itself.
   std::vector<ComparisonRun> runs;
-  PixelEstimates first;     ///< Of the first run.
-  PixelEstimates together;  ///< Of all runs.
-  std::vector<float> flip;  ///< Of the first run, of each pixel.
-  BiasTest bias;            ///< Of all runs together.
+  PixelEstimates first;     ///< Estimates of the first run.
+  PixelEstimates together;  ///< Estimates of all runs.
+  std::vector<float> flip;  ///< Error of each pixel of the first run.
+  BiasTest bias;            ///< Test of all runs together.
   BiasVerdict verdict = BiasVerdict::kPasses;
   /// Over the baseline, by CPU seconds.
   std::optional<Interval> efficiency;
@@ -76,7 +78,7 @@ struct ConfigurationResult {
   /// Whether its pictures are unbiased as far as anyone can tell.
   bool is_trusted() const;
   bool has_overflows() const;
-  /// Of a figure over the runs.
+  /// Mean of a figure over the runs, with its interval.
   Interval over_runs(const std::function<double(const ComparisonRun&)>& figure) const;
   /// 1/(MSE · cost) over that of the baseline in the same round; nothing where an error is below
   /// the noise of the reference.
@@ -89,12 +91,12 @@ struct ConfigurationResult {
 struct Comparison {
   std::vector<ConfigurationResult> configurations;
   std::size_t baseline = 0;  ///< Which one efficiencies are relative to: the first with `delta`.
-  std::vector<Reference> references;      ///< One for each field that interpolations make.
-  std::vector<std::size_t> reference_of;  ///< Of each configuration.
+  std::vector<Reference> references;  ///< References, one for each field that interpolations make.
+  std::vector<std::size_t> reference_of;  ///< Index of each configuration's reference.
   double level = 0;                       ///< ComparisonSettings::level
   double threshold = 0;                   ///< Largest |z| that chance explains.
   std::size_t tests = 0;                  ///< How many it is for.
-  double seconds = 0;                     ///< In all, with the reference.
+  double seconds = 0;                     ///< Time in all, with the reference.
 
   const Reference& reference(std::size_t configuration) const {
     return references[reference_of[configuration]];
@@ -104,7 +106,7 @@ struct Comparison {
 /// What is going on.
 struct ComparisonProgress {
   std::string step;     ///< "reference", or "delta, run 2 of 5".
-  double fraction = 0;  ///< Of all the work.
+  double fraction = 0;  ///< Part of all the work that is done.
   double seconds = 0;   ///< Since it began.
 };
 
@@ -132,8 +134,8 @@ Comparison compare(const RenderTarget& target, const ComparisonSettings& setting
 std::vector<Reference> references_of(const RenderTarget& target, const ComparisonSettings& settings,
                                      const ComparisonProgressFunction& progress = {});
 
-/// One comparison of others that have run different rounds of the same settings, with the same
-/// references: that of all rounds in one go, but for times, where each has run one round.
+/// Comparison of all rounds, of others that have run some each, with the same settings and
+/// references: that of one go, but for times, where each has run one round.
 /// @param rounds at least one, in the order of their rounds
 /// @throws Error where they are of other configurations
 Comparison merge_rounds(std::vector<Comparison> rounds);

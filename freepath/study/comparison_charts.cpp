@@ -72,7 +72,7 @@ ChartSeries convergence_of(const ConfigurationResult& result) {
     }
   }
   ChartSeries series{.name = result.name, .x = {}, .y = {}};
-  for (const auto& [place, bin] : bins) {
+  for (const auto& [doublings, bin] : bins) {
     const auto seconds = geometric_interval(bin.seconds);
     const auto error = geometric_interval(bin.errors);
     series.x.push_back(seconds->value);

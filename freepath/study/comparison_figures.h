@@ -12,8 +12,8 @@ namespace freepath {
 
 /// A column of numbers.
 struct ComparisonFigure {
-  std::string_view key;      ///< In JSON and CSV.
-  std::string_view name;     ///< In tables.
+  std::string_view key;      ///< Name in JSON and CSV.
+  std::string_view name;     ///< Name in tables.
   std::string_view meaning;  ///< One sentence.
   std::function<double(const ComparisonRun&)> of_run;
 };

@@ -12,10 +12,10 @@ namespace freepath {
 /// What a report tells besides what was measured.
 struct ReportContext {
   std::string target;   ///< "cloud.vdb"
-  std::string command;  ///< That makes the same report, as typed.
+  std::string command;  ///< Command that makes the same report, as typed.
   std::string machine;  ///< One line: processor, threads, instructions.
-  std::string date;     ///< As in ISO 8601.
-  double exposure = 0;  ///< Of the pictures [stops].
+  std::string date;     ///< Date as in ISO 8601.
+  double exposure = 0;  ///< Exposure of the pictures [stops].
 };
 
 /// One line on this machine: its processor, how many threads run, the instructions that walks use.

@@ -13,8 +13,8 @@ namespace freepath {
 /// Squared differences from a reference, less what the reference's own variance adds: for an
 /// unbiased picture its variance, estimated without bias (hence it may be negative).
 struct SquaredError {
-  double mse = 0;                          ///< Over pixels and channels.
-  double relative_mse = 0;                 ///< Each over reference² + 0.01.
+  double mse = 0;           ///< Over pixels and channels.
+  double relative_mse = 0;  ///< Mean of squared errors, each over reference² + 0.01.
   std::array<double, 3> channel_mse = {};  ///< Over pixels.
 };
 
@@ -41,8 +41,8 @@ struct BiasTest {
   /// Edge of a block [pixels]; the last ones of a row and a column take what is left.
   static constexpr int kBlock = 16;
 
-  std::array<double, 3> z = {};     ///< Of the mean of each channel.
-  std::vector<float> block_z = {};  ///< Of the blocks, row after row, three each.
+  std::array<double, 3> z = {};     ///< Standard errors of the mean of each channel.
+  std::vector<float> block_z = {};  ///< Standard errors of the blocks, row after row, three each.
   int blocks_across = 0, blocks_down = 0;
   bool is_heavy_tailed = false;  ///< See BiasVerdict::kUndecided.
 
@@ -55,7 +55,8 @@ struct BiasTest {
   BiasVerdict verdict(double threshold) const;
 };
 
-/// By how many pixels of equal variance the variance of the mean would be made: (Σv)²/Σv².
+/// The number of pixels of equal variance by which the variance of the mean would be made:
+/// (Σv)²/Σv².
 double effective_pixels(const PixelEstimates& estimates);
 
 BiasTest test_bias(const PixelEstimates& estimates, const PixelEstimates& reference);

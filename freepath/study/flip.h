@@ -19,7 +19,7 @@ struct FlipViewing {
 std::vector<float> flip(std::span<const float> reference, std::span<const float> test, int width,
                         int height, const FlipViewing& viewing = {});
 
-/// The same for pictures of unlimited range: the largest difference over exposures from the one
+/// FLIP errors of pictures of unlimited range: the largest difference over exposures from the one
 /// that shows the brightest pixel of the reference to the one that shows its median, each through
 /// the ACES tone curve [Andersson21].
 std::vector<float> high_range_flip(std::span<const float> reference, std::span<const float> test,

@@ -23,8 +23,8 @@ constexpr std::array<Color, 5> kDiverging = {
 constexpr Color kUnknown = {128, 128, 128};
 
 /// The colour at a place from 0 to 1, linear sRGB.
-std::array<float, 3> color_at(std::span<const Color> colors, double place) {
-  const double scaled = place * static_cast<double>(colors.size() - 1);
+std::array<float, 3> color_at(std::span<const Color> colors, double position) {
+  const double scaled = position * static_cast<double>(colors.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(scaled), colors.size() - 2);
   const auto share = static_cast<float>(scaled - static_cast<double>(below));
   std::array<float, 3> color;
@@ -43,14 +43,14 @@ std::span<const Color> colors_of(const ColorScale& scale) {
 
 }  // namespace
 
-double ColorScale::place(double value) const {
-  double place = (value - low) / (high - low);
-  if (logarithmic) place = value > 0 ? std::log(value / low) / std::log(high / low) : 0;
-  return std::clamp(place, 0.0, 1.0);
+double ColorScale::position(double value) const {
+  double position = (value - low) / (high - low);
+  if (logarithmic) position = value > 0 ? std::log(value / low) / std::log(high / low) : 0;
+  return std::clamp(position, 0.0, 1.0);
 }
 
-double ColorScale::value(double place) const {
-  return logarithmic ? low * std::pow(high / low, place) : low + place * (high - low);
+double ColorScale::value(double position) const {
+  return logarithmic ? low * std::pow(high / low, position) : low + position * (high - low);
 }
 
 Image heat_map(std::span<const float> values, int width, int height, const ColorScale& scale) {
@@ -59,7 +59,7 @@ Image heat_map(std::span<const float> values, int width, int height, const Color
   for (const float value : values) {
     std::array<float, 3> color;
     if (std::isfinite(value)) {
-      color = color_at(colors, scale.place(value));
+      color = color_at(colors, scale.position(value));
     } else {
       const std::array<Color, 2> unknown = {kUnknown, kUnknown};
       color = color_at(unknown, 0);
@@ -88,9 +88,9 @@ ColorScale logarithmic_scale(const std::vector<std::span<const float>>& maps) {
   ColorScale scale{.low = 0.1, .high = 1, .logarithmic = true};
   if (values.empty()) return scale;
   const auto quantile = [&](double share) {
-    const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + place, values.end());
-    return double{values[static_cast<std::size_t>(place)]};
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return double{values[static_cast<std::size_t>(rank)]};
   };
   scale.high = quantile(0.998);
   scale.low = std::max(quantile(0.02), 1e-6 * scale.high);

@@ -13,14 +13,14 @@ namespace freepath {
 struct ColorScale {
   double low = 0, high = 1;
   bool logarithmic = false;
-  /// From blue over white to red, for values on both sides of the middle; else from dark to bright
-  /// (the colours of viridis).
+  /// Whether colours go from blue over white to red, for values on both sides of the middle; else
+  /// from dark to bright (the colours of viridis).
   bool diverging = false;
 
-  /// Place on the scale, 0 to 1; beyond its ends the ends.
-  double place(double value) const;
-  /// The value at a place.
-  double value(double place) const;
+  /// Position on the scale, 0 to 1; beyond its ends the ends.
+  double position(double value) const;
+  /// The value at a position.
+  double value(double position) const;
 };
 
 /// A picture of values, linear sRGB; a value that is not finite is grey.

@@ -18,7 +18,7 @@ namespace freepath {
 struct LabOptions {
   std::vector<std::string> settings;  ///< Empty: all.
   std::vector<std::string> trackers;  ///< Empty: lab_trackers() of each setting.
-  uint64_t paths = 400'000;           ///< Of each tracker; sweeps and evolutions take fewer.
+  uint64_t paths = 400'000;           ///< Paths of each tracker; sweeps and evolutions take fewer.
   uint64_t seed = 0;
   int threads = 0;  ///< 0: as many as the machine has; changes no result.
   Absorption absorption = Absorption::kWeighted;
@@ -55,7 +55,7 @@ struct LabResult {
   LabOptions options;
   std::vector<LabFindings> settings;
   std::size_t tests = 0;  ///< Comparisons of unbiased trackers that count.
-  double level = 0;       ///< Of each, so that the family's is kLabLevel.
+  double level = 0;       ///< Level of each, so that the family's is kLabLevel.
 };
 
 inline constexpr double kLabLevel = 1e-3;
@@ -63,7 +63,7 @@ inline constexpr double kLabLevel = 1e-3;
 enum class LabVerdict {
   kRefuses,    ///< The tracker does not apply.
   kAgrees,     ///< No comparison that counts is off.
-  kDiffers,    ///< One is.
+  kDiffers,    ///< One of them differs.
   kUndecided,  ///< None counts: the weights spread too widely.
 };
 LabVerdict verdict_of(const LabMeasurement& measurement, double level);

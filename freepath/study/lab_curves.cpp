@@ -44,9 +44,9 @@ const LabCurves::Piece& LabCurves::piece(double x, int channel) const {
 }
 
 double LabCurves::depth(double x, int channel) const {
-  const double place = std::clamp(x, 0.0, 1.0) * kLabVoxels;
+  const double position = std::clamp(x, 0.0, 1.0) * kLabVoxels;
   const Piece& at = piece(std::clamp(x, 0.0, 1.0), channel);
-  return at.depth + at.sigma_t() * (place - std::floor(place)) / kLabVoxels;
+  return at.depth + at.sigma_t() * (position - std::floor(position)) / kLabVoxels;
 }
 
 double LabCurves::transmittance(double x, int channel) const {

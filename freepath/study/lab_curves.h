@@ -31,14 +31,15 @@ class LabCurves {
   struct Piece {
     double sigma_a = 0, sigma_s = 0;
     double source = 0;  ///< sigma_a L_e
-    double depth = 0;   ///< From 0 to where it begins.
+    double depth = 0;   ///< Optical depth from 0 to where it begins.
     double sigma_t() const { return sigma_a + sigma_s; }
   };
   const Piece& piece(double x, int channel) const;
   double integrate_radiance(const LabSetting& setting, int channel) const;
 
   int channels_;
-  std::vector<Piece> pieces_[3];  ///< Of each channel, one a voxel and a last one at the end.
+  /// Pieces of each channel, one a voxel and a last one at the end.
+  std::vector<Piece> pieces_[3];
   double radiance_[3] = {};
 };
 

@@ -15,7 +15,7 @@ inline constexpr const char* kLabChannelNames[] = {"R", "G", "B"};
 inline constexpr int kLabDrawingOrder[] = {2, 0, 1};
 
 struct LabFigure {
-  std::string name;  ///< Of its file, without ".svg".
+  std::string name;  ///< Name of its file, without ".svg".
   Chart chart;
   std::string caption;
 };

@@ -28,7 +28,7 @@ struct LabWalk {
   std::string tracker;  ///< "name:option=value", or "auto"
   Absorption absorption = Absorption::kWeighted;
   uint64_t seed = 0;
-  uint64_t paths = 0;  ///< Of each channel that takes its own.
+  uint64_t paths = 0;  ///< Paths of each channel that takes its own.
 };
 
 /// What was seen in a channel.
@@ -36,7 +36,7 @@ struct LabChannel {
   LabCheck transmittance;         ///< The weight that escapes.
   LabCheck free_path;             ///< The weight that scatters, by where it does.
   LabCheck radiance;              ///< What all paths bring back.
-  double variance = 0;            ///< Of the radiance of one path.
+  double variance = 0;            ///< Variance of the radiance of one path.
   std::vector<double> ended;      ///< Density of real collisions in each bin, unweighted [1/m].
   std::vector<double> scattered;  ///< Density × weight of scatterings in each bin [1/m].
   std::vector<double> error;      ///< Standard error of it [1/m].
@@ -49,7 +49,7 @@ struct LabChannel {
 struct LabMeasurement {
   std::string tracker;
   std::string stands_for;  ///< What `auto` has chosen; empty otherwise.
-  bool biased = false;     ///< By its own account.
+  bool biased = false;     ///< Whether it says so itself.
   bool shared = true;      ///< Whether one path carries all channels.
   std::string refusal;     ///< Why it does not apply; everything below is then empty.
   uint64_t paths = 0;
@@ -58,7 +58,7 @@ struct LabMeasurement {
   double lookups = 0;             ///< A path.
   double null_collisions = 0;     ///< A path.
   double control_collisions = 0;  ///< A path.
-  double variance = 0;            ///< Of the radiance of a path, mean over channels.
+  double variance = 0;            ///< Variance of the radiance of a path, mean over channels.
   double seconds = 0;             ///< A path, on one thread; differs from run to run.
 };
 

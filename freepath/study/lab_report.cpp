@@ -138,11 +138,11 @@ PageTable overview(const LabResult& result) {
   for (const LabFindings& findings : result.settings) {
     table.columns.push_back({findings.setting.name, findings.setting.summary});
     // In the order of the settings' own lists, merged.
-    auto place = trackers.begin();
+    auto next = trackers.begin();
     for (const LabMeasurement& measurement : findings.trackers) {
       auto found = std::find(trackers.begin(), trackers.end(), measurement.tracker);
-      if (found == trackers.end()) found = trackers.insert(place, measurement.tracker);
-      place = found + 1;
+      if (found == trackers.end()) found = trackers.insert(next, measurement.tracker);
+      next = found + 1;
     }
   }
   for (const std::string& tracker : trackers) {

@@ -87,9 +87,9 @@ double noise(double x) {
   double sum = 0;
   double size = 1;
   for (uint32_t octave = 0; octave < 4; ++octave) {
-    const double place = x * (6U << octave);
-    const auto cell = static_cast<uint32_t>(place);
-    const double s = place - cell;
+    const double position = x * (6U << octave);
+    const auto cell = static_cast<uint32_t>(position);
+    const double s = position - cell;
     const auto value = [&](uint32_t at) {
       return uniform_from_bits(philox({at, octave, 0, 0}, {20170720U, 0})[0]);
     };
@@ -233,7 +233,7 @@ Medium medium_along_ray(const LabSetting& setting) {
   return Medium(std::move(components));
 }
 
-void place_lab_ray(std::size_t slot, float x, float length, RayStream& rays) {
+void set_lab_ray(std::size_t slot, float x, float length, RayStream& rays) {
   rays.origin[0][slot] = x;
   for (int axis = 1; axis < 3; ++axis) rays.origin[axis][slot] = float(kRayVoxel / kLabVoxels);
   for (int axis = 0; axis < 3; ++axis) rays.direction[axis][slot] = axis == 0 ? 1.0F : 0.0F;
@@ -243,7 +243,7 @@ void place_lab_ray(std::size_t slot, float x, float length, RayStream& rays) {
 void set_lab_rays(uint64_t first, std::size_t count, RayStream& rays) {
   rays.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    place_lab_ray(i, 0, 1, rays);
+    set_lab_ray(i, 0, 1, rays);
     rays.pixel[i] = static_cast<uint32_t>((first + i) >> 32);
     rays.sample[i] = static_cast<uint32_t>(first + i);
     rays.stream[i] = 0;

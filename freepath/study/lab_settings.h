@@ -25,7 +25,7 @@ inline constexpr int kLabCell = 16;
 /// applies and free paths have a closed form (lab_curves.h); it goes on beyond the ray on all
 /// sides, so that the bounds of super-voxels are those of the function.
 struct LabSetting {
-  std::string name;     ///< On the command line.
+  std::string name;     ///< Name on the command line.
   std::string summary;  ///< One line for users.
   std::shared_ptr<const Medium> medium;
   int channels = 1;  ///< 1 where all are equal.
@@ -59,6 +59,6 @@ void set_lab_rays(uint64_t first, std::size_t count, RayStream& rays);
 
 /// Puts one of them elsewhere along the ray.
 /// @param length how far it goes [world]
-void place_lab_ray(std::size_t slot, float x, float length, RayStream& rays);
+void set_lab_ray(std::size_t slot, float x, float length, RayStream& rays);
 
 }  // namespace freepath

@@ -110,7 +110,7 @@ class Flyer {
     for (std::size_t slot = 0; slot < paths_.size(); ++slot) {
       if (!arrive(slot)) continue;
       paths_[kept] = paths_[slot];
-      place_lab_ray(kept, rays_.origin[0][slot], rays_.t_max[slot], rays_);
+      set_lab_ray(kept, rays_.origin[0][slot], rays_.t_max[slot], rays_);
       rays_.pixel[kept] = rays_.pixel[slot];
       rays_.sample[kept] = rays_.sample[slot];
       rays_.stream[kept] = rays_.stream[slot] + 1;

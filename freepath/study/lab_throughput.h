@@ -12,7 +12,7 @@ namespace freepath {
 /// the mean, and not at all in the percentiles.
 struct LabWeights {
   double mean = 0;
-  double standard_error = 0;  ///< Of the mean.
+  double standard_error = 0;  ///< Standard error of the mean.
   double exact = 0;           ///< What the mean estimates; NaN where it is not known.
   LabStanding standing = LabStanding::kTested;
   double low = 0, median = 0, high = 0;  ///< |weight| that 5, 50 and 95 % of the paths stay below.
@@ -32,8 +32,8 @@ struct LabThroughput {
   std::vector<LabStage> stages;
 };
 
-inline constexpr int kLabCuts = 32;         ///< Of the ray, and its end.
-inline constexpr int kLabScatterings = 32;  ///< That are followed.
+inline constexpr int kLabCuts = 32;         ///< Cuts of the ray, and its end.
+inline constexpr int kLabScatterings = 32;  ///< Scatterings that are followed.
 
 /// Weights along the ray: it is cut into stretches, and a flight that leaves one goes on with its
 /// weight in the next, so that every cut sees the weights of the paths that fly on. Their mean is

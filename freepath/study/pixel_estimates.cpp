@@ -12,21 +12,21 @@ constexpr std::array kColours = {"R", "G", "B"};
 
 /// Where three channels of a prefix stand; nothing if one is missing.
 std::optional<std::array<int, 3>> channels_of(const Image& image, const std::string& prefix) {
-  std::array<int, 3> places{};
+  std::array<int, 3> channels{};
   for (int channel = 0; channel < 3; ++channel) {
-    const auto place = find_channel(image, prefix + kColours[channel]);
-    if (!place) return {};
-    places[channel] = *place;
+    const auto found = find_channel(image, prefix + kColours[channel]);
+    if (!found) return {};
+    channels[channel] = *found;
   }
-  return places;
+  return channels;
 }
 
-std::vector<float> copy_channels(const Image& image, const std::array<int, 3>& places) {
+std::vector<float> copy_channels(const Image& image, const std::array<int, 3>& channels) {
   std::vector<float> values;
   values.reserve(3 * image.pixel_count());
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-    for (const int place : places) {
-      values.push_back(image.values[pixel * image.channels.size() + place]);
+    for (const int channel : channels) {
+      values.push_back(image.values[pixel * image.channels.size() + channel]);
     }
   }
   return values;
@@ -34,10 +34,10 @@ std::vector<float> copy_channels(const Image& image, const std::array<int, 3>& p
 
 std::vector<float> copy_channel(const Image& image, const char* name) {
   std::vector<float> values;
-  const auto place = find_channel(image, name);
-  if (!place) return values;
+  const auto found = find_channel(image, name);
+  if (!found) return values;
   for (std::size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-    values.push_back(image.values[pixel * image.channels.size() + *place]);
+    values.push_back(image.values[pixel * image.channels.size() + *found]);
   }
   return values;
 }
@@ -117,12 +117,12 @@ PixelEstimates merged(const std::vector<const PixelEstimates*>& parts) {
     double samples = 0;
     for (const PixelEstimates* part : parts) samples += part->samples[pixel];
     sum.samples[pixel] = static_cast<float>(samples);
-    const auto weighted = [&](const std::vector<float> PixelEstimates::*values, std::size_t place,
+    const auto weighted = [&](const std::vector<float> PixelEstimates::*values, std::size_t index,
                               bool squared) {
       double total = 0;
       for (const PixelEstimates* part : parts) {
         const double weight = samples > 0 ? part->samples[pixel] / samples : 0;
-        total += weight * (squared ? weight : 1) * (part->*values)[place];
+        total += weight * (squared ? weight : 1) * (part->*values)[index];
       }
       return static_cast<float>(total);
     };

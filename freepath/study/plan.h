@@ -25,7 +25,7 @@ struct PilotSettings {
       0.6;         ///< [s] Of each candidate, shared by its rounds; each takes a sample at least.
   int rounds = 3;  ///< At least 2: intervals come from them.
   uint64_t seed = 0;
-  RenderSettings render;  ///< All but samples, time and methods.
+  RenderSettings render;  ///< Settings but for samples, time and methods.
   /// Tells the work done so far, by which pictures are measured [s].
   std::function<double()> cpu_clock = process_cpu_seconds;
 };
@@ -35,7 +35,7 @@ struct PilotResult {
   PilotCandidate candidate;
   std::string refusal;  ///< Why it can't render this; empty: it can.
   bool is_biased = false;
-  double lookups_per_path = 0;      ///< With those of shadow rays.
+  double lookups_per_path = 0;      ///< Look-ups, those of shadow rays included.
   double nanoseconds_per_path = 0;  ///< CPU time.
   uint64_t overflows = 0;           ///< RenderResult::overflows
   /// Time · noise², which stays the same as an unbiased picture goes on [s]: CPU time

@@ -13,7 +13,7 @@ namespace freepath {
 struct ReferencePlan {
   std::string file;      ///< An image; empty: it is made.
   double time = 15;      ///< [s] For one that is made; 0: unlimited.
-  uint32_t samples = 0;  ///< Of each of its pixels; 0: as many as the time allows.
+  uint32_t samples = 0;  ///< Samples of each of its pixels; 0: as many as the time allows.
   /// Folder where those that are made are kept and found again; empty: they are not.
   std::string cache;
 };

@@ -14,11 +14,11 @@ namespace freepath {
 
 /// A picture that can be rendered in more than one way.
 struct RenderTarget {
-  std::string name;  ///< For people: "cloud.vdb".
-  /// Of everything that the exact picture depends on: the same digest, the same picture.
+  std::string name;  ///< Name for people: "cloud.vdb".
+  /// Digest of everything that the exact picture depends on: the same digest, the same picture.
   std::string digest;
   int width = 0, height = 0;  ///< [pixels]
-  /// Of the space of its pictures' R, G and B, where it is not sRGB's.
+  /// Primaries of the space of its pictures' R, G and B, where it is not sRGB's.
   std::optional<RgbChromaticities> chromaticities = {};
   /// Renders it. As `render`; of the settings' layers all but variance, samples and look-ups are
   /// left to it.
@@ -34,7 +34,7 @@ RenderTarget target_of(const std::shared_ptr<PathScene>& scene, ColorMode color)
 
 /// How to estimate a picture.
 struct Configuration {
-  std::string tracker = "delta", transmittance = "ratio";  ///< With their options.
+  std::string tracker = "delta", transmittance = "ratio";  ///< Methods with their options.
   Interpolation interpolation = Interpolation::kStochastic;
 
   bool operator==(const Configuration&) const = default;

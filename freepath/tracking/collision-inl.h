@@ -23,7 +23,7 @@ struct Collision {
   VecF rate;       ///< Density of tentative collisions here [1/m], of what is still to be decided.
   VecF full_rate;  ///< The same before a control has decided its part.
   VecF uniform;    ///< (0,1), for the choice of the event.
-  RandomPlace random;  ///< Of further numbers.
+  RandomCounter random;  ///< Of further numbers.
   VecF weight[N];
   VecF emitted[N];  ///< Tally of emitted radiance so far.
   MaskF scatter;

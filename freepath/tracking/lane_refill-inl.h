@@ -200,7 +200,7 @@ class LaneRefill {
     group.load_rows(rows);
     HWY_ALIGN_MAX uint32_t block[kLanes];
     hn::Store(hn::Set(kUint, kHeroBlock), kUint, block);
-    const RandomPlace random = {block, group.stream, group.sample, group.pixel, seed_};
+    const RandomCounter random = {block, group.stream, group.sample, group.pixel, seed_};
     tracker_.template begin<N>(random, lanes, weight, medium_.albedo(), rows);
     group.store_rows(rows, lanes);
   }

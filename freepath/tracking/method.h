@@ -23,7 +23,7 @@ struct MethodOption {
 /// What users may know of a method. All trackers and estimators carry one, and every list, help
 /// text and parser is made from these.
 struct MethodInfo {
-  std::string_view name;  ///< The same in C++, on the command line and in scenes.
+  std::string_view name;  ///< Name, the same in C++, on the command line and in scenes.
   std::string_view summary;
   std::string_view needs;     ///< What the medium must be like; empty: anything.
   std::string_view unbiased;  ///< When it is unbiased.

@@ -137,7 +137,7 @@ inline constexpr float kCoarse = 0x1p-8F;
 
 /// Where the random numbers of a group of lanes stand: rows of a WalkGroup. Makes numbers beyond
 /// those of a tentative collision's own block, each a function of its place as they are.
-struct RandomPlace {
+struct RandomCounter {
   const uint32_t* block;
   const uint32_t* stream;
   const uint32_t* sample;

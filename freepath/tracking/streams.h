@@ -59,10 +59,10 @@ struct RayStream {
 struct FlightStream {
   std::vector<float> t;  ///< Distance flown [world].
   std::vector<Event> event;
-  std::vector<uint8_t> component;  ///< Of a scattering.
+  std::vector<uint8_t> component;  ///< Number of the component that scatters.
   std::array<std::vector<float>, kMaxChannels> weight;
   std::array<std::vector<float>, kMaxChannels> emitted;  ///< Emitted radiance collected on the way.
-  /// With hero-wavelength: relative densities of the path, to be handed on with its next ray.
+  /// Relative densities, with hero-wavelength: of the path, to be handed on with its next ray.
   std::array<std::vector<float>, kMaxChannels> density;
   std::vector<uint32_t> lookups;
 

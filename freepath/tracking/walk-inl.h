@@ -227,13 +227,13 @@ class Walk {
     auto cursor = segments_.load(group.segments);
     const MaskF colliding = mask_of(group.colliding);
     const VecF step = hn::Div(hn::Load(kFloat, group.tau), hn::Load(kFloat, group.rate));
-    const VecF place = hn::Min(hn::Add(cursor.t, step), hn::Load(kFloat, group.exit));
+    const VecF position = hn::Min(hn::Add(cursor.t, step), hn::Load(kFloat, group.exit));
     if constexpr (Tracker::kAdvances) {
       const auto record = segments_.record(cursor, colliding);
       const auto bounds = medium_.template bounds<Tracker::kRateNeedsControl>(record);
-      advance_rows(bounds, hn::Sub(place, cursor.t), colliding, group);
+      advance_rows(bounds, hn::Sub(position, cursor.t), colliding, group);
     }
-    assign(cursor.t, colliding, place);
+    assign(cursor.t, colliding, position);
     hn::Store(cursor.t, kFloat, group.segments.t);
     VecF point[3];
     segments_.position(cursor, point);

@@ -79,7 +79,7 @@ struct WalkGroup {
     }
   }
 
-  HWY_INLINE RandomPlace random(uint64_t seed) const {
+  HWY_INLINE RandomCounter random(uint64_t seed) const {
     return {block, stream, sample, pixel, seed};
   }
 

@@ -11,8 +11,8 @@ enum class Absorption {
 
 /// Where emission is added.
 enum class EmissionTally {
-  kCollision,  ///< At every tentative collision, w mu_a L_e/rate [Simon17]; the default.
-  kAnalog,     ///< At absorption events (under weighted absorption: at real collisions).
+  kCollision,  ///< Emission at every tentative collision, w mu_a L_e/rate [Simon17]; the default.
+  kAnalog,     ///< Emission at absorption events (under weighted absorption: at real collisions).
 };
 
 struct WalkModes {

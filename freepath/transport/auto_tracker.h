@@ -28,7 +28,7 @@ struct TrackerChoice {
 /// would decide without a look-up, and by the number of components that a look-up reads; of any
 /// other itself, without a reason.
 TrackerChoice settle_tracker(std::string tracker, const Medium& medium);
-/// The same for given cross sections of its components.
+/// Settles the tracker for given cross sections of the medium's components.
 TrackerChoice settle_tracker(std::string tracker, const Medium& medium,
                              const MediumChannels& channels);
 

@@ -20,7 +20,7 @@ enum class Simd { kBest, kOneLane, kSse4, kAvx2, kAvx512 };
 
 /// @throws Error for an unknown name
 Simd parse_simd(std::string_view name);
-/// Those that this machine can run, best first, one lane last.
+/// SIMD targets that this machine can run, best first, one lane last.
 std::vector<Simd> available_simd();
 std::string_view to_string(Simd simd);
 

@@ -114,7 +114,7 @@ class PartWalks::Streams {
 
 PartWalks::PartWalks(const Medium& medium, const MediumChannels& channels, const Vec3d& origin)
     : medium_(medium), origin_(origin) {
-  ray_to_place_ = Matrix4d().setTranslation(origin) * medium.world_to_place();
+  ray_to_grid_ = Matrix4d().setTranslation(origin) * medium.world_to_grid();
   for (const WalkPart& part : medium.parts()) {
     middles_.push_back(medium.middle_of(part) - origin);
     radiance_.push_back(radiance_views_of(medium, part, channels));
@@ -130,9 +130,9 @@ std::vector<PartWalks::Visit> PartWalks::first_visits(const RayStream& rays,
   ends.clear();
   for (uint32_t ray = 0; ray < rays.size(); ++ray) {
     const std::size_t before = visits.size();
-    const Vec3d origin = vector_at(rays.origin, ray) * ray_to_place_;
+    const Vec3d origin = vector_at(rays.origin, ray) * ray_to_grid_;
     Vec3d direction;
-    ray_to_place_.multDirMatrix(vector_at(rays.direction, ray), direction);
+    ray_to_grid_.multDirMatrix(vector_at(rays.direction, ray), direction);
     if (all_finite(origin) && all_finite(direction)) {
       medium_.part_tree().for_each_on_ray(origin, direction, double{rays.t_max[ray]},
                                           [&](std::size_t part, double t) {

@@ -31,7 +31,7 @@ class PartWalks {
   /// @param origin what positions of rays are relative to [world]
   PartWalks(const Medium& medium, const MediumChannels& channels, const Vec3d& origin);
 
-  /// As WalkFunction.
+  /// Walks through the parts, as WalkFunction does through a whole.
   /// @param view of the medium
   /// @param channels whose weights the function writes
   void walk(WalkFunction function, PartWeights weights, const MediumView& view,
@@ -46,9 +46,10 @@ class PartWalks {
 
   const Medium& medium_;
   Vec3d origin_;
-  Matrix4d ray_to_place_;       ///< From where rays are, relative to the origin, to places.
-  std::vector<Vec3d> middles_;  ///< Of the parts, relative to the origin.
-  std::vector<std::shared_ptr<const std::vector<RadianceView>>> radiance_;  ///< Of the parts.
+  Matrix4d ray_to_grid_;        ///< Map from where rays are, relative to the origin, to the grid.
+  std::vector<Vec3d> middles_;  ///< Middles of the parts, relative to the origin.
+  /// Radiance of the parts.
+  std::vector<std::shared_ptr<const std::vector<RadianceView>>> radiance_;
 };
 
 }  // namespace freepath

@@ -105,11 +105,11 @@ RayMedium::Path RayMedium::path_in(int k, const Path& path) const {
   return result;
 }
 
-double RayMedium::voxel(int k, const Vec3i& place) const {
+double RayMedium::voxel(int k, const Vec3i& coord) const {
   const ComponentView& component = view_.components[numbers_[k]];
   const auto& counts = component.brick_counts;
-  const int entry = ((place.x >> 3) * counts[1] + (place.y >> 3)) * counts[2] + (place.z >> 3);
-  const int within = (place.x & 7) << 6 | (place.y & 7) << 3 | (place.z & 7);
+  const int entry = ((coord.x >> 3) * counts[1] + (coord.y >> 3)) * counts[2] + (coord.z >> 3);
+  const int within = (coord.x & 7) << 6 | (coord.y & 7) << 3 | (coord.z & 7);
   return component
       .voxels[std::size_t{component.index[entry]} * BrickMap::kBrickVoxels + std::size_t(within)];
 }
@@ -122,9 +122,9 @@ Vec3i RayMedium::inside(int k, Vec3i voxel) const {
   return voxel;
 }
 
-std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& place,
+std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& fraction,
                                        const Vec3d& step) const {
-  // As a polynomial of the place: Σ a[i][j][l] x^i y^j z^l, each power 0 or 1.
+  // As a polynomial of the position: Σ a[i][j][l] x^i y^j z^l, each power 0 or 1.
   double a[2][2][2];
   for (int x = 0; x < 2; ++x) {
     for (int y = 0; y < 2; ++y) {
@@ -138,7 +138,7 @@ std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& pl
     for (int j = 0; j < 2; ++j) plane[1][j] -= plane[0][j];
     for (auto& row : plane) row[1] -= row[0];
   }
-  const auto& [x, y, z] = place;
+  const auto& [x, y, z] = fraction;
   const auto& [dx, dy, dz] = step;
   const double yz = a[1][1][0] + a[1][1][1] * z;  // of x y, at this z
   const double xz = a[1][0][1] + a[1][1][1] * y;  // of x z, at this y
@@ -159,9 +159,10 @@ RayMedium::Densities RayMedium::densities(const Path& path, double t, RandomStre
   Densities result{};
   for (int k = 0; k < component_count(); ++k) {
     const Path own = path_in(k, path);
-    const Vec3d place = own.origin + own.direction * t - Vec3d(centre_offset(view_.interpolation));
-    Vec3i base = inside(k, floor(place));
-    Vec3d fraction = place - Vec3d(base);
+    const Vec3d position =
+        own.origin + own.direction * t - Vec3d(centre_offset(view_.interpolation));
+    Vec3i base = inside(k, floor(position));
+    Vec3d fraction = position - Vec3d(base);
     for (int axis = 0; axis < 3; ++axis) fraction[axis] = std::clamp(fraction[axis], 0.0, 1.0);
     if (view_.interpolation == Interpolation::kTrilinear) {
       result[k] = std::max(0.0, cubic(k, base, fraction, Vec3d(0.0))[0]);
@@ -193,9 +194,9 @@ bool RayMedium::Segments::next(Segment& segment) {
   const float head = view.cells[record];  // where all densities are 0, minus the empty radius
   segment.empty = true;
   for (int k = 0; k < medium_.component_count(); ++k) {
-    const std::size_t place = record + medium_.number(k);
-    segment.minimum[k] = view.minima[place];
-    segment.maximum[k] = std::max(0.0F, view.cells[place]);
+    const std::size_t entry = record + medium_.number(k);
+    segment.minimum[k] = view.minima[entry];
+    segment.maximum[k] = std::max(0.0F, view.cells[entry]);
     if (segment.maximum[k] > 0) segment.empty = false;
   }
   segment.begin = steps_.begin();
@@ -232,10 +233,11 @@ bool RayMedium::Cells::next(Cell& cell) {
       cell.density[k][0] = medium_.voxel(k, base);
       continue;
     }
-    Vec3d place = track.path.origin + track.path.direction * cell.begin - Vec3d(0.5) - Vec3d(base);
-    for (int axis = 0; axis < 3; ++axis) place[axis] = std::clamp(place[axis], 0.0, 1.0);
+    Vec3d fraction =
+        track.path.origin + track.path.direction * cell.begin - Vec3d(0.5) - Vec3d(base);
+    for (int axis = 0; axis < 3; ++axis) fraction[axis] = std::clamp(fraction[axis], 0.0, 1.0);
     const Vec3d step = track.path.direction * (cell.end - cell.begin);
-    cell.density[k] = medium_.cubic(k, base, place, step);
+    cell.density[k] = medium_.cubic(k, base, fraction, step);
   }
   begin_ = cell.end;
   for (int i = 0; i < track_count_; ++i) {

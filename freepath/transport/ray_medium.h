@@ -24,7 +24,7 @@ class RayMedium {
     Vec3d origin;             ///< Place in the grid of voxels that walk space has; see WalkSpace.
     Vec3d direction;          ///< [voxels per world unit]
     double begin = 0;         ///< Where it enters the medium [world].
-    double length = 0;        ///< From there to its end [world]; 0 if it misses.
+    double length = 0;        ///< Length from there to its end [world]; 0 if it misses.
     double voxel_length = 0;  ///< Way in which it passes an edge length of a voxel [world].
   };
 
@@ -42,8 +42,8 @@ class RayMedium {
   struct Cell {
     double begin = 0;
     double end = 0;
-    /// Of each component: Σ_j density[j] s^j with s from 0 to 1 along the part. Without
-    /// interpolation next() sets density[0] alone, and the others stay 0.
+    /// Polynomial of each component's density: Σ_j density[j] s^j with s from 0 to 1 along the
+    /// part. Without interpolation next() sets density[0] alone, and the others stay 0.
     std::array<std::array<double, 4>, Medium::kMaxComponents> density{};
   };
 
@@ -67,7 +67,7 @@ class RayMedium {
    private:
     /// The way through the voxels of a component, or of all where they are aligned.
     struct Track {
-      Path path;  ///< In those voxels.
+      Path path;  ///< Path in those voxels.
       GridSteps steps;
       Vec3i base;       ///< The present cell,
       double exit = 0;  ///< and where the path leaves it.
@@ -104,15 +104,15 @@ class RayMedium {
   /// A path as it passes through the voxels of a component.
   Path path_in(int k, const Path& path) const;
   /// Value of a voxel, counted from the first of the index.
-  double voxel(int k, const Vec3i& place) const;
+  double voxel(int k, const Vec3i& coord) const;
   /// The nearest voxel that has a next one along every axis within the index of a component.
   Vec3i inside(int k, Vec3i voxel) const;
   /// Density between the eight voxels from `base` on, along place + s · step, s in [0,1].
-  std::array<double, 4> cubic(int k, const Vec3i& base, const Vec3d& place,
+  std::array<double, 4> cubic(int k, const Vec3i& base, const Vec3d& fraction,
                               const Vec3d& step) const;
 
   MediumView view_;
-  std::vector<int> numbers_;  ///< Of the components that count.
+  std::vector<int> numbers_;  ///< Numbers of the components that count.
 };
 
 }  // namespace freepath

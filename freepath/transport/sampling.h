@@ -16,7 +16,7 @@ FlightStream sample_free_paths(const Medium& medium, const RayStream& rays,
                                const WalkSettings& settings = {},
                                int channel = Walker::kAllChannels,
                                WalkStatistics* statistics = nullptr);
-/// The same in any 1 to kMaxChannels channels, which one path carries.
+/// Samples free paths in any 1 to kMaxChannels channels, which one path carries.
 /// @param channels cross sections of each component of the medium
 FlightStream sample_free_paths(const Medium& medium, const MediumChannels& channels,
                                const RayStream& rays, const WalkSettings& settings = {},

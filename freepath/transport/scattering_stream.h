@@ -22,7 +22,8 @@ inline constexpr uint32_t kBlocksWithoutLight = 1;
 /// Scatterings in slots [0, count), of the rays of one walk. What has no value yet is finite, so
 /// that lanes may read it.
 struct ScatteringStream {
-  /// As many as the nearest cache holds with their paths; a multiple of the lanes of any target.
+  /// Scatterings, as many as the nearest cache holds with their paths; a multiple of the lanes of
+  /// any target.
   static constexpr std::size_t kCapacity = 64;
   template <class T>
   using Row = std::array<T, kCapacity>;
@@ -35,7 +36,7 @@ struct ScatteringStream {
   std::array<Row<float>, kScatteringNumbers> numbers{};
   Row<float> g{};                         ///< Mean cosine of the phase function.
   std::array<Row<float>, 3> position{};   ///< [world, relative to the scene's origin]
-  std::array<Row<float>, 3> direction{};  ///< Of travel, before [world].
+  std::array<Row<float>, 3> direction{};  ///< Direction of travel before [world].
   // Of the light that was drawn, where one was.
   std::array<Row<float>, 3> to_light{};  ///< Direction towards it [world].
   Row<float> light_pdf{};                ///< LightSample::pdf.
@@ -48,7 +49,7 @@ struct ScatteringStream {
   Row<float> light_share{};      ///< What its radiance counts for; 0 without a draw.
   Row<float> shadow_survival{};  ///< With what probability to cast a shadow ray, (0, 1].
   std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
-  Row<float> next_pdf{};             ///< Of that [1/sr].
+  Row<float> next_pdf{};             ///< Density of that direction [1/sr].
 };
 
 }  // namespace freepath

@@ -18,12 +18,11 @@ struct ShadowRoulette {
   /// Brightness from which on every ray is cast: mean of the channels, in units of white. 0: all
   /// are.
   float least = 0;
-  Vec3f dominant{0};  ///< Direction towards the light, unit [world].
-  Vec3f corner{0};    ///< Of the cells [world, relative to the scene's origin].
-  Vec3f per_cell{0};  ///< Cells in a unit of length [1/world].
-  Vec3i counts{0};    ///< Of cells along each axis.
-  const float* roots =
-      nullptr;  ///< Of the transmittances of cells, x fastest; null: none is known.
+  Vec3f dominant{0};             ///< Direction towards the light, unit [world].
+  Vec3f corner{0};               ///< Corner of the cells [world, relative to the scene's origin].
+  Vec3f per_cell{0};             ///< Cells in a unit of length [1/world].
+  Vec3i counts{0};               ///< Number of cells along each axis.
+  const float* roots = nullptr;  ///< Transmittances of cells, x fastest; null: none is known.
 
   /// The probability with which to cast a ray, (0, 1]; if it is cast, what it brings is to be
   /// divided by that. The lanes compute the same in the same order (transport/scattering-inl.h).

@@ -15,7 +15,7 @@ namespace freepath {
 /// Which methods to walk with, and how.
 struct WalkSettings {
   std::string tracker = "delta";        ///< "name:option=value"; see tracker_infos().
-  std::string transmittance = "ratio";  ///< The same; see transmittance_infos().
+  std::string transmittance = "ratio";  ///< Estimator and its options; see transmittance_infos().
   Interpolation interpolation = Interpolation::kStochastic;
   Absorption absorption = Absorption::kWeighted;
   EmissionTally emission = EmissionTally::kCollision;

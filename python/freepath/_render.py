@@ -45,14 +45,14 @@ class Picture:
     Arrays are views of the picture's own memory, and read-only.
     """
 
-    __slots__ = ("_core", "_facts", "_pixels", "_places")
+    __slots__ = ("_core", "_facts", "_pixels", "_indices")
 
     def __init__(self, core: _freepath.Picture, facts: Callable[[], Facts] | None = None) -> None:
         self._core = core
         self._facts = facts
         pixels: Any = core.pixels
         self._pixels: NDArray[np.float32] = pixels
-        self._places = {name: i for i, name in enumerate(core.channels)}
+        self._indices = {name: i for i, name in enumerate(core.channels)}
 
     @property
     def image(self) -> NDArray[np.float32]:
@@ -77,7 +77,7 @@ class Picture:
     def layers(self) -> Mapping[str, NDArray[np.float32]]:
         """Layers by name, each of shape (height, width) or (height, width, 3): docs/pictures.md."""
         groups: dict[str, list[str]] = {}
-        for name in self._places:
+        for name in self._indices:
             if name not in "RGBA":
                 groups.setdefault(name.rpartition(".")[0] or name, []).append(name)
         return {group: self._named(*names) for group, names in groups.items()}
@@ -121,13 +121,13 @@ class Picture:
         return self.png(view="neutral")
 
     def _named(self, *names: str) -> NDArray[np.float32]:
-        """Channels of consecutive places, as a view."""
-        places = [self._places[name] for name in names]
-        if len(places) == 1:
-            return self._pixels[..., places[0]]
-        if places == list(range(places[0], places[-1] + 1)):
-            return self._pixels[..., places[0] : places[-1] + 1]
-        return self._pixels[..., places]
+        """Channels of consecutive indices, as a view."""
+        indices = [self._indices[name] for name in names]
+        if len(indices) == 1:
+            return self._pixels[..., indices[0]]
+        if indices == list(range(indices[0], indices[-1] + 1)):
+            return self._pixels[..., indices[0] : indices[-1] + 1]
+        return self._pixels[..., indices]
 
     def __repr__(self) -> str:
         height, width = self._pixels.shape[:2]

@@ -42,7 +42,7 @@ struct CompareOptions {
   std::string reference, cache;
   double reference_time = 0;
   uint32_t reference_samples = 0;
-  std::string digest;  ///< Of all that the exact picture depends on.
+  std::string digest;  ///< Name for all that the exact picture depends on.
   std::shared_ptr<const PythonReferences> references;
 };
 

@@ -30,7 +30,7 @@ namespace {
 constexpr std::size_t kBrickVoxels = BrickMap::kBrickVoxels;
 
 using Corner = std::array<int, 3>;
-using Places = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Coords = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Bricks = nb::ndarray<const uint32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Voxels = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
@@ -50,17 +50,17 @@ nb::tuple bricks_of(const Field& field) {
   const BrickMap& map = field.voxels;
   std::vector<PlacedBrick> placed;
   map.for_each_brick([&](const PlacedBrick& brick) { placed.push_back(brick); });
-  ArrayMemory<int32_t> places(placed.size() * 3);
+  ArrayMemory<int32_t> coords(placed.size() * 3);
   ArrayMemory<uint32_t> bricks(placed.size());
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) places.data()[3 * i + axis] = placed[i].place[axis];
+    for (int axis = 0; axis < 3; ++axis) coords.data()[3 * i + axis] = placed[i].coord[axis];
     bricks.data()[i] = placed[i].brick;
   }
   ArrayMemory<float> voxels(map.voxels().size());
   std::copy(map.voxels().begin(), map.voxels().end(), voxels.data());
   return nb::make_tuple(corner_of(map.active_min()), corner_of(map.active_max()),
                         corner_of(map.origin()), corner_of(map.brick_counts()), map.is_sparse(),
-                        std::move(places).to_numpy({placed.size(), 3}),
+                        std::move(coords).to_numpy({placed.size(), 3}),
                         std::move(bricks).to_numpy({placed.size()}),
                         std::move(voxels).to_numpy({map.brick_count(), kBrickVoxels}));
 }
@@ -69,10 +69,10 @@ nb::tuple bricks_of(const Field& field) {
 std::shared_ptr<Field> field_of_bricks(const std::string& name, const Matrix& transform,
                                        const Corner& active_min, const Corner& active_max,
                                        const Corner& origin, const Corner& brick_counts,
-                                       bool is_sparse, const Places& places, const Bricks& bricks,
+                                       bool is_sparse, const Coords& coords, const Bricks& bricks,
                                        const Voxels& voxels) {
   const std::size_t count = bricks.shape(0);
-  if (places.shape(0) != count || voxels.shape(1) != kBrickVoxels) {
+  if (coords.shape(0) != count || voxels.shape(1) != kBrickVoxels) {
     fail("{}: its bricks do not go together", name);
   }
   // A brick that stands at several places is of one value.
@@ -87,9 +87,9 @@ std::shared_ptr<Field> field_of_bricks(const std::string& name, const Matrix& tr
   BrickMapBuilder builder(first, last, std::max<std::size_t>(voxels.shape(0), 1) - 1,
                           is_sparse ? count : BrickMapBuilder::kUnknown);
   for (std::size_t i = 0; i < count; ++i) {
-    const int32_t* const place = places.data() + 3 * i;
+    const int32_t* const coord = coords.data() + 3 * i;
     const float* const values = voxels.data() + std::size_t{bricks.data()[i]} * kBrickVoxels;
-    const Vec3i brick(place[0], place[1], place[2]);
+    const Vec3i brick(coord[0], coord[1], coord[2]);
     if (uses[bricks.data()[i]] > 1) {
       builder.add_constant_brick(brick, values[0]);
     } else {
@@ -115,8 +115,8 @@ std::string digest_of(const Field& field) {
                               corner_of(field.voxels.active_max())};
     digest.add(bytes_of(corners, 2));
     field.voxels.for_each_brick([&](const PlacedBrick& brick) {
-      const Corner place = corner_of(brick.place);
-      digest.add(bytes_of(&place, 1));
+      const Corner coord = corner_of(brick.coord);
+      digest.add(bytes_of(&coord, 1));
       digest.add(bytes_of(field.voxels.voxels().data() + brick.brick * kBrickVoxels, kBrickVoxels));
     });
     return digest.hex();

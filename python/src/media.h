@@ -15,7 +15,7 @@ namespace freepath::python {
 struct PythonMedium {
   std::shared_ptr<const Medium> medium;
   MediumChannels channels;
-  /// Of its components, in their order, those that glow as black bodies.
+  /// Temperatures of the components, in their order, where they glow as black bodies.
   std::vector<std::optional<TemperatureEmission>> temperatures;
   int super_voxel = 0;  ///< As it was asked for.
 

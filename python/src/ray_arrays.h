@@ -47,9 +47,9 @@ class RayArrays {
     bool is_double = false;
 
     double operator[](std::size_t i) const {
-      const std::byte* const place = data + static_cast<std::ptrdiff_t>(i) * stride;
-      return is_double ? *reinterpret_cast<const double*>(place)
-                       : double{*reinterpret_cast<const float*>(place)};
+      const std::byte* const item = data + static_cast<std::ptrdiff_t>(i) * stride;
+      return is_double ? *reinterpret_cast<const double*>(item)
+                       : double{*reinterpret_cast<const float*>(item)};
     }
   };
   template <class Array>

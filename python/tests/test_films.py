@@ -66,9 +66,9 @@ def test_films_come_back_from_bytes_files_and_pickles(scene, tmp_path):
 
 def test_damaged_bytes_are_refused_wherever_they_are_damaged(scene):
     data = fp.render(scene, spp=1).film.to_bytes()
-    for place in range(0, len(data), max(1, len(data) // 40)):
+    for offset in range(0, len(data), max(1, len(data) // 40)):
         damaged = bytearray(data)
-        damaged[place] ^= 0x40
+        damaged[offset] ^= 0x40
         with pytest.raises(fp.Error, match="bytes of a film: "):
             fp.Film.from_bytes(bytes(damaged))
     for size in (0, 10, len(data) // 2, len(data) - 1):
@@ -243,10 +243,10 @@ def test_pickled_fields_have_the_same_voxels_in_the_same_place(cloud, tmp_path):
 def test_pickled_fields_of_bricks_far_apart_stay_small():
     voxels = np.random.default_rng(4).random((3, 512)).astype(np.float32)
     voxels[0] = 0
-    places = np.array([[0, 0, 0], [20_000, 3, 20_000]], np.int32)
+    coords = np.array([[0, 0, 0], [20_000, 3, 20_000]], np.int32)
     far = fp._field._field_of_bricks(
         "far", np.eye(4).tolist(), (0, 0, 0), (160_007, 31, 160_007), (-8, -8, -8), (20_003, 6, 20_003),
-        True, places, np.array([1, 2], np.uint32), voxels,
+        True, coords, np.array([1, 2], np.uint32), voxels,
     )  # fmt: skip
     copy = pickle.loads(pickle.dumps(far))
     assert copy._digest() == far._digest() and copy.shape == (160_008, 32, 160_008)

@@ -18,7 +18,7 @@ namespace freepath::testing {
 namespace {
 
 using testing_volumes::as_text;
-using testing_volumes::sample_places;
+using testing_volumes::sample_positions;
 using testing_volumes::SampleGrid;
 
 class ConvertTest : public ProgramTest {
@@ -58,8 +58,8 @@ void expect_same(const Field& a, const Field& b, double share, double amount) {
     for (int y = low.y - 1; y <= high.y + 1; y += 2) {
       for (int z = low.z - 1; z <= high.z + 1; ++z) {
         const double expected = a.voxels.value(Vec3i(x, y, z));
-        const Vec3d place = Vec3d(x, y, z) * between;
-        ASSERT_NEAR(b.voxels.interpolate(place), expected, share * expected + amount) << place;
+        const Vec3d point = Vec3d(x, y, z) * between;
+        ASSERT_NEAR(b.voxels.interpolate(point), expected, share * expected + amount) << point;
       }
     }
   }
@@ -99,9 +99,9 @@ TEST_F(ConvertTest, TheSameInputGivesTheSameBytes) {
 TEST_F(ConvertTest, ATurnedGridKeepsItsPlaceInVti) {
   write("a.nrrd", testing_volumes::nrrd_file("raw"));
   expect_done("convert a.nrrd b.vti");
-  testing_volumes::expect_affine(load("b.vti"), sample_places());
+  testing_volumes::expect_affine(load("b.vti"), sample_positions());
   expect_done("convert b.vti c.nvdb --name other");
-  testing_volumes::expect_affine(load("c.nvdb", "other"), sample_places());
+  testing_volumes::expect_affine(load("c.nvdb", "other"), sample_positions());
 }
 
 TEST_F(ConvertTest, UnitsScalePositionsAndScaleValues) {
@@ -139,7 +139,7 @@ TEST_F(ConvertTest, GridsAreChosenAndAllIsAll) {
 }
 
 TEST_F(ConvertTest, RawValuesAreReadByOptions) {
-  const SampleGrid grid = sample_places(0, false);
+  const SampleGrid grid = sample_positions(0, false);
   write("a.raw", testing_volumes::stored<float>(testing_volumes::affine_values(grid)));
   expect_error("convert a.raw b.vdb", {"a.raw", "--raw-size"});
   expect_done("convert a.raw b.vdb --raw-size 10,9,11 --raw-spacing 0.5,0.25,2 --raw-origin 1,2,3");
@@ -234,8 +234,10 @@ TEST_F(ConvertTest, OpticalDepthsAlongKnownRaysAreTheClosedForm) {
                                          {"a.nii", false, true},
                                          {"a.nvdb", true, true}}) {
     SCOPED_TRACE(ray.file);
-    const Matrix4d places = sample_places(ray.cells ? 0.5 : 0, ray.turned).index_to_world;
-    const Vec3d from = Vec3d(1.2, 0.7, 0.4) * places, to = Vec3d(8.1, 7.3, 9.8) * places;
+    const Matrix4d index_to_world =
+        sample_positions(ray.cells ? 0.5 : 0, ray.turned).index_to_world;
+    const Vec3d from = Vec3d(1.2, 0.7, 0.4) * index_to_world,
+                to = Vec3d(8.1, 7.3, 9.8) * index_to_world;
     // The density is affine, so that its mean over the ray is that of the ends.
     const auto mean = [](const Vec3d& a, const Vec3d& b) {
       return (testing_volumes::affine_density(a) + testing_volumes::affine_density(b)) / 2;
@@ -246,7 +248,7 @@ TEST_F(ConvertTest, OpticalDepthsAlongKnownRaysAreTheClosedForm) {
         transmittance(load(ray.file), static_cast<float>(sigma), from, to);
     EXPECT_LT(std::abs(z_score(found.mean(), found.standard_error(), std::exp(-1))), 4);
     // The same ray, were the samples half a step further: the test would see it.
-    const Vec3d shift = Vec3d(0.5) * places - Vec3d(0) * places;
+    const Vec3d shift = Vec3d(0.5) * index_to_world - Vec3d(0) * index_to_world;
     const double shifted = sigma * length * mean(from - shift, to - shift);
     EXPECT_GT(std::abs(z_score(found.mean(), found.standard_error(), std::exp(-shifted))), 6);
   }

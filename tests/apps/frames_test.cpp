@@ -95,8 +95,8 @@ TEST(FrameNames, TheNumberTakesItsPlace) {
   EXPECT_EQ(name("50%%_%d{}.vdb"), "50%_42{}.vdb");
   EXPECT_EQ(name("%%d"), "%d");
   EXPECT_EQ(FrameName("%02d").in_frame(12345), "12345");
-  EXPECT_TRUE(FrameName("a%d").has_place());
-  EXPECT_FALSE(FrameName("a%%d").has_place());
+  EXPECT_TRUE(FrameName("a%d").has_number());
+  EXPECT_FALSE(FrameName("a%%d").has_number());
 }
 
 TEST(FrameNames, WhatIsNoPlaceIsRefused) {

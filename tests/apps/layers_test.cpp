@@ -322,9 +322,9 @@ TEST_F(LayersTest, FindsADenoiserWhereTheEnvironmentSays) {
   fs::copy(fs::path(FREEPATH_FAKE_DENOISER) / library, path(inside + library));
   const std::string render =
       " freepath render ball.vdb --size 4x4 --spp 1 --denoise -o picture.exr";
-  for (const std::string place :
+  for (const std::string options :
        {"FREEPATH_OIDN=env", "FREEPATH_OIDN=$PWD/env", "VIRTUAL_ENV=$PWD/env"}) {
-    EXPECT_EQ(shell(place + render).status, 0) << place;
+    EXPECT_EQ(shell(options + render).status, 0) << options;
   }
   EXPECT_EQ(shell("FREEPATH_OIDN=" + inside + library + render).status, 0);
   EXPECT_EQ(shell("FREEPATH_OIDN=" + inside + render).status, 0);

@@ -141,7 +141,7 @@ TEST_F(OverlapRenderTest, AVectorGridIsThreeSmallerGridsBitForBit) {
   for (int c = 0; c < 3; ++c) {
     parts[c].voxels.clear();
     for (auto& voxel : whole[c].voxels) {
-      if (voxel.place[c] < 0) voxel.value = 0;
+      if (voxel.coord[c] < 0) voxel.value = 0;
       if (voxel.value > 0) parts[c].voxels.push_back(voxel);
     }
   }

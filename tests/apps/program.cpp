@@ -38,14 +38,14 @@ pid_t start(const std::vector<std::string>& arguments, const fs::path& folder, i
   std::vector<std::string> copies = arguments;
   for (std::string& argument : copies) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  const std::string place = folder;
+  const std::string path = folder;
   const pid_t process = fork();
   if (process != 0) return process;
   const int input = open("/dev/null", O_RDONLY);
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(messages, STDERR_FILENO);
-  if (chdir(place.c_str()) == 0) execv(program.c_str(), pointers.data());
+  if (chdir(path.c_str()) == 0) execv(program.c_str(), pointers.data());
   _exit(127);
 }
 

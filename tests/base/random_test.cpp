@@ -71,9 +71,9 @@ double uniform_exactly(uint32_t bits, uint32_t second) {
 
 /// The first bit of the words chooses the side of log 2, the rest the place on it.
 double exponential_exactly(uint32_t bits, uint32_t second) {
-  const double place =
+  const double fraction =
       (double(bits & 0x7FFFFFFFU) + (double(second >> 1) + 0.5) * 0x1p-31) * 0x1p-32;
-  return bits >> 31 != 0 ? -std::log(place) : -std::log1p(-place);
+  return bits >> 31 != 0 ? -std::log(fraction) : -std::log1p(-fraction);
 }
 
 /// Words of every size, from 0 and from both ends of each half.

@@ -75,12 +75,12 @@ class CaseSpace {
     }
     possible_.resize(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2] * counts_[3]);
     Levels levels{};
-    do possible_[place(levels)] = !reason_against(make(levels));
+    do possible_[index(levels)] = !reason_against(make(levels));
     while (advance(levels, kDecisive));
   }
 
   const Levels& counts() const { return counts_; }
-  bool possible(const Levels& levels) const { return possible_[place(levels)]; }
+  bool possible(const Levels& levels) const { return possible_[index(levels)]; }
 
   CertifiedCase make(const Levels& levels) const {
     CertifiedCase test;
@@ -134,10 +134,10 @@ class CaseSpace {
     while (property >= 0 && ++levels[property] == counts_[property]) levels[property--] = 0;
     return property >= 0;
   }
-  std::size_t place(const Levels& levels) const {
-    std::size_t place = 0;
-    for (int i = 0; i < kDecisive; ++i) place = place * counts_[i] + levels[i];
-    return place;
+  std::size_t index(const Levels& levels) const {
+    std::size_t index = 0;
+    for (int i = 0; i < kDecisive; ++i) index = index * counts_[i] + levels[i];
+    return index;
   }
 
   bool free_paths_;

@@ -123,11 +123,11 @@ MediumChannels rgb_of(const std::vector<Component>& components) {
 ComponentChannels wavelengths_of(int count, int component) {
   ComponentChannels channels;
   for (int c = 0; c < count; ++c) {
-    const auto place = static_cast<float>((c * (component == 0 ? 1 : 3) + component) % count) /
+    const auto share = static_cast<float>((c * (component == 0 ? 1 : 3) + component) % count) /
                        static_cast<float>(count);
-    channels.sigma_s[c] = 0.3F + 2.2F * place * place;
-    channels.sigma_a[c] = 0.3F + 0.4F * std::abs(place - 0.5F);
-    channels.emission[c] = 0.5F + place;
+    channels.sigma_s[c] = 0.3F + 2.2F * share * share;
+    channels.sigma_a[c] = 0.3F + 0.4F * std::abs(share - 0.5F);
+    channels.emission[c] = 0.5F + share;
   }
   return channels;
 }

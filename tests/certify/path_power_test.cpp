@@ -78,7 +78,7 @@ FilmMean render_furnace(const std::string& world, uint32_t samples, uint64_t see
 FilmMean core_furnace(uint32_t samples, uint64_t seed) {
   std::string voxels;
   for (int i = 0; i < 512; ++i) {
-    const auto is_middle = [](int place) { return place == 3 || place == 4; };
+    const auto is_middle = [](int index) { return index == 3 || index == 4; };
     voxels += is_middle(i % 8) && is_middle(i / 8 % 8) && is_middle(i / 64) ? "8 " : "0.02 ";
   }
   const std::string medium =

@@ -77,11 +77,11 @@ struct Planted : Method {
 };
 
 /// Random numbers of which the one that chooses a component has an error.
-struct PlantedRandom : RandomPlace {
+struct PlantedRandom : RandomCounter {
   float factor;
 
   HWY_INLINE VecF component_uniform() const {
-    return hn::Mul(RandomPlace::component_uniform(), set(factor));
+    return hn::Mul(RandomCounter::component_uniform(), set(factor));
   }
 };
 
@@ -92,20 +92,20 @@ struct PlantedFields : FieldSum<N> {
 
   template <class Densities, class Total>
   HWY_INLINE VecI choose_component(const Densities& densities, const Total& total,
-                                   const RandomPlace& random, MaskF lanes,
+                                   const RandomCounter& random, MaskF lanes,
                                    VecF (&weight)[N]) const {
     return FieldSum<N>::choose_component(densities, total, PlantedRandom{random, component}, lanes,
                                          weight);
   }
   template <class State, class Control, class Total>
   HWY_INLINE VecI choose_component(const State& state, const Control& control, const Total& total,
-                                   const RandomPlace& random, MaskF lanes,
+                                   const RandomCounter& random, MaskF lanes,
                                    VecF (&weight)[N]) const {
     return FieldSum<N>::choose_component(state, control, total, PlantedRandom{random, component},
                                          lanes, weight);
   }
   template <class Segment>
-  HWY_INLINE VecI draw_component(const Segment& segment, const RandomPlace& random, MaskF lanes,
+  HWY_INLINE VecI draw_component(const Segment& segment, const RandomCounter& random, MaskF lanes,
                                  VecF& uniform, VecF& rate) const {
     uniform = hn::Mul(uniform, set(component));
     return FieldSum<N>::draw_component(segment, random, lanes, uniform, rate);

@@ -19,7 +19,7 @@ constexpr double kOpaque = 80;
 
 /// Where the ray is in a component's index space: place + t · step.
 struct IndexRay {
-  Vec3d place;
+  Vec3d position;
   Vec3d step;
 };
 
@@ -40,7 +40,7 @@ void add_seams(const Field& field, const CertifiedRay& ray, bool nearest,
     const int first = field.voxels.active_min()[axis] - 2;
     const int last = field.voxels.active_max()[axis] + 2;
     for (int plane = first; plane <= last; ++plane) {
-      const double t = (plane + (nearest ? 0.5 : 0.0) - path.place[axis]) / path.step[axis];
+      const double t = (plane + (nearest ? 0.5 : 0.0) - path.position[axis]) / path.step[axis];
       if (t > 0 && t < ray.t_max) seams.push_back(t);
     }
   }
@@ -84,7 +84,7 @@ RayProfile::Piece RayProfile::make_piece(double begin, double end) const {
     const Field& field = *components[k].density;
     const IndexRay path = index_ray(field, ray_);
     const auto at = [&](double s) {
-      return density_at(field, path.place + path.step * (begin + s * (end - begin)), nearest_);
+      return density_at(field, path.position + path.step * (begin + s * (end - begin)), nearest_);
     };
     Cubic& cubic = piece.density[k];
     if (nearest_) {

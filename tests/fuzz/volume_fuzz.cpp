@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 /// A file to be damaged.
 struct Base {
   std::string bytes;
-  std::vector<std::size_t> places;  ///< Bytes near such that are not 0.
+  std::vector<std::size_t> offsets;  ///< Bytes near such that are not 0.
 };
 
 Base read_base(const fs::path& path) {
@@ -39,7 +39,7 @@ Base read_base(const fs::path& path) {
   for (std::size_t i = 0; i < base.bytes.size(); ++i) {
     if (base.bytes[i] == 0) continue;
     for (next = std::max(next, i - std::min(i, kNear)); next < i + kNear; ++next) {
-      if (next < base.bytes.size()) base.places.push_back(next);
+      if (next < base.bytes.size()) base.offsets.push_back(next);
     }
   }
   return base;
@@ -56,7 +56,7 @@ std::vector<Base> read_bases() {
   std::sort(paths.begin(), paths.end());
   std::vector<Base> bases;
   for (const fs::path& path : paths) bases.push_back(read_base(path));
-  require(!bases.empty() && !bases[0].places.empty(), "there are files to be damaged");
+  require(!bases.empty() && !bases[0].offsets.empty(), "there are files to be damaged");
   return bases;
 }
 
@@ -72,14 +72,14 @@ std::string damaged(std::string_view input) {
   constexpr std::size_t kHead = 3;
   while (input.size() > kHead) {
     const std::size_t number = std::size_t{byte(0)} | std::size_t{byte(1)} << 8U;
-    const std::size_t place = base.places[number % base.places.size()];
+    const std::size_t offset = base.offsets[number % base.offsets.size()];
     if (byte(2) == kMark) {
-      bytes.resize(std::min(bytes.size(), place));
+      bytes.resize(std::min(bytes.size(), offset));
       break;
     }
     const std::size_t count = std::min<std::size_t>(byte(2), input.size() - kHead);
-    for (std::size_t i = 0; i < count && place + i < bytes.size(); ++i) {
-      bytes[place + i] = input[kHead + i];
+    for (std::size_t i = 0; i < count && offset + i < bytes.size(); ++i) {
+      bytes[offset + i] = input[kHead + i];
     }
     input.remove_prefix(kHead + count);
   }

@@ -28,7 +28,7 @@ struct Cells {
 };
 
 /// By differences of the parameterisation: independent of what is tested.
-Cells cells_of(const ShapeReference& shape, const Matrix4d& place) {
+Cells cells_of(const ShapeReference& shape, const Matrix4d& object_to_world) {
   constexpr int kSteps = 240;
   constexpr double kStep = 1.0 / kSteps;
   Cells cells;
@@ -38,7 +38,7 @@ Cells cells_of(const ShapeReference& shape, const Matrix4d& place) {
       const double v = (j + 0.5) * kStep;
       if (std::holds_alternative<TriangleMesh>(shape.geometry) && v > u) continue;
       const auto at = [&](double du, double dv) {
-        return shape.at(shape.geometry, u + du * kStep, v + dv * kStep) * place;
+        return shape.at(shape.geometry, u + du * kStep, v + dv * kStep) * object_to_world;
       };
       double area = (at(0.5, 0) - at(-0.5, 0)).cross(at(0, 0.5) - at(0, -0.5)).length();
       if (std::holds_alternative<TriangleMesh>(shape.geometry) && i == j) area *= 0.5;
@@ -55,13 +55,13 @@ class EveryAreaShape : public ::testing::TestWithParam<std::tuple<int, bool>> {
   void SetUp() override {
     shape_ = references()[std::get<0>(GetParam())];
     RandomSurfaces random(99 + std::get<0>(GetParam()));
-    place_ = random.transform(0.5, true);
-    if (!std::get<1>(GetParam())) place_.setScale(Vec3d(1.3));
-    description_ = shape_of(shape_.geometry, place_, 5);
+    object_to_world_ = random.transform(0.5, true);
+    if (!std::get<1>(GetParam())) object_to_world_.setScale(Vec3d(1.3));
+    description_ = shape_of(shape_.geometry, object_to_world_, 5);
     description_.first_primitive = 7;
   }
   ShapeReference shape_;
-  Matrix4d place_;
+  Matrix4d object_to_world_;
   SurfaceShape description_;
 };
 
@@ -79,7 +79,7 @@ constexpr double kLevel = 1e-3;  // of all tests of one kind together
 constexpr std::size_t kTests = 16;
 
 TEST_P(EveryAreaShape, IsDrawnFromByItsArea) {
-  const Cells cells = cells_of(shape_, place_);
+  const Cells cells = cells_of(shape_, object_to_world_);
   const AreaShape area(description_, Vec3d(0));
   ASSERT_EQ(area.first_primitive(), 7U);
   ASSERT_EQ(area.primitive_count(), 1U);
@@ -96,8 +96,8 @@ TEST_P(EveryAreaShape, IsDrawnFromByItsArea) {
     const auto index = [](float x) {
       return std::clamp(static_cast<int>(x * Cells::kSide), 0, Cells::kSide - 1);
     };
-    const std::size_t place = index(drawn.u) * Cells::kSide + index(drawn.v);
-    for (std::size_t k = 0; k < cell.size(); ++k) cell[k].add(k == place ? 1 / drawn.pdf : 0);
+    const std::size_t drawn_cell = index(drawn.u) * Cells::kSide + index(drawn.v);
+    for (std::size_t k = 0; k < cell.size(); ++k) cell[k].add(k == drawn_cell ? 1 / drawn.pdf : 0);
   }
   EXPECT_NEAR(whole.mean(), cells.total, 5 * whole.standard_error() + 1e-3 * cells.total);
   for (std::size_t k = 0; k < cell.size(); ++k) {
@@ -142,9 +142,9 @@ TEST_P(EveryAreaShape, FillsTheSolidAngleThatIsSeen) {
   const Surfaces surfaces = surfaces_of(description_);
   RandomSurfaces random(55 + std::get<0>(GetParam()));
   const double sphere = 4 * std::numbers::pi;
-  for (int place = 0; place < 4; ++place) {
+  for (int i = 0; i < 4; ++i) {
     Vec3f from(random.direction() * random.uniform(2.5, 4));
-    if (place == 3) from = Vec3f(random.in_box(0.3));  // within closed shapes
+    if (i == 3) from = Vec3f(random.in_box(0.3));  // within closed shapes
     RunningStatistics drawn;
     for (int i = 0; i < 40000; ++i) {
       const AreaSample sample = area.sample_from(from, 7, random.uniform(), random.uniform());

@@ -15,9 +15,9 @@ namespace freepath::testing {
 
 namespace {
 
-SurfaceShape boundary(ShapeGeometry geometry, uint32_t number, const Vec3d& place = Vec3d(0)) {
+SurfaceShape boundary(ShapeGeometry geometry, uint32_t number, const Vec3d& center = Vec3d(0)) {
   Matrix4d matrix;
-  matrix.setTranslation(place);
+  matrix.setTranslation(center);
   SurfaceShape shape = shape_of(std::move(geometry), matrix, number);
   shape.is_boundary = true;
   return shape;
@@ -39,11 +39,11 @@ TEST(Surfaces, MeshNormalsDecideTheSideAndReverseOrientationNegatesThem) {
       for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         std::swap(mesh.indices[i], mesh.indices[i + 1]);
       }
-      const Matrix4d place = random.transform(0.1, mirrored);
-      SurfaceShape shape = shape_of(mesh, place);
+      const Matrix4d object_to_world = random.transform(0.1, mirrored);
+      SurfaceShape shape = shape_of(mesh, object_to_world);
       shape.reverse_orientation = reversed;
       const Surfaces surfaces = surfaces_of(shape);
-      const Vec3f centre(Vec3d(0) * place);
+      const Vec3f centre(Vec3d(0) * object_to_world);
       int hits = 0;
       for (int i = 0; i < 500; ++i) {
         const Vec3f direction(random.direction());
@@ -53,9 +53,9 @@ TEST(Surfaces, MeshNormalsDecideTheSideAndReverseOrientationNegatesThem) {
         EXPECT_EQ(hit->from_inside, !reversed);
         EXPECT_GT(hit->point.shading_normal.dot(hit->point.normal), 0.9F);
         // Of the ellipsoid the normal is the gradient: the inverse transpose times the position.
-        const Vec3d object = Vec3d(hit->point.position) * place.inverse();
+        const Vec3d object = Vec3d(hit->point.position) * object_to_world.inverse();
         Vec3d gradient(0);
-        const Matrix4d inverse = place.inverse();
+        const Matrix4d inverse = object_to_world.inverse();
         for (int row = 0; row < 3; ++row) {
           for (int column = 0; column < 3; ++column) {
             gradient[row] += inverse[row][column] * object[column];
@@ -75,9 +75,9 @@ TEST(Surfaces, NearestOfManyShapesIsMet) {
   std::vector<Vec3d> centres;
   for (uint32_t i = 0; i < 60; ++i) {
     centres.push_back(random.in_box(5));
-    Matrix4d place;
-    place.setTranslation(centres.back());
-    scene.shapes.push_back(shape_of(Sphere{0.6}, place, i));
+    Matrix4d object_to_world;
+    object_to_world.setTranslation(centres.back());
+    scene.shapes.push_back(shape_of(Sphere{0.6}, object_to_world, i));
   }
   const Surfaces surfaces(scene, Vec3d(0));
   for (int ray = 0; ray < 3000; ++ray) {
@@ -130,7 +130,7 @@ TEST(Surfaces, BoundariesDoNotBlockAndAreCrossedInOrder) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_EQ(crossings.all()[i].shape, expected[i].first);
     EXPECT_EQ(crossings.all()[i].enters, expected[i].second);
-    EXPECT_NEAR(crossings.all()[i].place.t, ts[i], 0.02);
+    EXPECT_NEAR(crossings.all()[i].position.t, ts[i], 0.02);
   }
   EXPECT_FALSE(surfaces.occluded(Vec3f(0), Vec3f(2, 0, 0), {1.5F}, crossings));
   EXPECT_EQ(crossings.all().size(), 2U);
@@ -152,8 +152,8 @@ TEST(Surfaces, CrossingsOfRandomRaysAlternateThroughClosedBoundaries) {
     std::array<bool, 2> inside{};
     double last = 0;
     for (const BoundaryCrossing& crossing : crossings.all()) {
-      ASSERT_GE(crossing.place.t, last);
-      last = crossing.place.t;
+      ASSERT_GE(crossing.position.t, last);
+      last = crossing.position.t;
       ASSERT_EQ(crossing.enters, !inside[crossing.shape]);
       inside[crossing.shape] = crossing.enters;
     }
@@ -183,7 +183,7 @@ TEST(Surfaces, MoreCrossingsThanThereIsRoomForKeepTheNearest) {
   ASSERT_EQ(crossings.all().size(), BoundaryCrossings::kCapacity);
   for (uint32_t i = 0; i < BoundaryCrossings::kCapacity; ++i) {
     const uint32_t centre = 1 + i / 2;
-    EXPECT_NEAR(crossings.all()[i].place.t, centre + (i % 2 == 0 ? -0.4 : 0.4), 1e-5);
+    EXPECT_NEAR(crossings.all()[i].position.t, centre + (i % 2 == 0 ? -0.4 : 0.4), 1e-5);
   }
 }
 
@@ -200,8 +200,8 @@ TEST(Surfaces, AnInstanceIsMetAsTheSameShapeInItsPlace) {
       scene.groups.emplace_back();
       scene.groups.push_back({shape_of(geometry, in_group, 9)});
       scene.instances.push_back({1, back * random.transform(2, mirrored)});
-      const Matrix4d place = scene.instances[0].instance_to_world;
-      SurfaceShape direct = shape_of(geometry, in_group * place, 9);
+      const Matrix4d instance_to_world = scene.instances[0].instance_to_world;
+      SurfaceShape direct = shape_of(geometry, in_group * instance_to_world, 9);
       // A mirror in an instance flips no side; in the shape it flips that of quadrics.
       const bool is_quadric = geometry.index() >= 2;
       direct.reverse_orientation = mirrored && is_quadric;
@@ -210,7 +210,7 @@ TEST(Surfaces, AnInstanceIsMetAsTheSameShapeInItsPlace) {
       int hits = 0;
       for (int ray = 0; ray < 2000; ++ray) {
         const Vec3f from(random.in_box(6));
-        const Vec3d aim = random.in_box(1.2) * in_group * place;
+        const Vec3d aim = random.in_box(1.2) * in_group * instance_to_world;
         const Vec3f direction = Vec3f(aim) - from;
         const auto a = instanced.intersect(from, direction, 0, kFar);
         const auto b = reference.intersect(from, direction, 0, kFar);
@@ -229,7 +229,7 @@ TEST(Surfaces, AnInstanceIsMetAsTheSameShapeInItsPlace) {
       // What leaves it does not meet it again at once.
       for (int ray = 0; ray < 5000; ++ray) {
         const Vec3f from(random.in_box(6));
-        const Vec3d aim = random.in_box(1.2) * in_group * place;
+        const Vec3d aim = random.in_box(1.2) * in_group * instance_to_world;
         const auto hit = instanced.intersect(from, Vec3f(aim) - from, 0, kFar);
         if (!hit) continue;
         const Vec3f onward(random.direction());
@@ -247,9 +247,10 @@ TEST(Surfaces, ARayThatLeavesAMeshDoesNotMeetItAgain) {
   for (const double scale : {1e-3, 1.0, 1e4}) {
     // A convex body: from outside nothing of it can be met.
     RandomSurfaces random(41);
-    Matrix4d place;
-    place.setTranslation(Vec3d(0.7, -0.4, 0.3) * scale);
-    const Surfaces surfaces = surfaces_of(shape_of(triangle_sphere(scale, 30, false), place));
+    Matrix4d object_to_world;
+    object_to_world.setTranslation(Vec3d(0.7, -0.4, 0.3) * scale);
+    const Surfaces surfaces =
+        surfaces_of(shape_of(triangle_sphere(scale, 30, false), object_to_world));
     int again = 0;
     for (int ray = 0; ray < 100000; ++ray) {
       const Vec3f from(random.in_box(3 * scale));
@@ -294,13 +295,13 @@ TEST(Surfaces, AHugeTriangleAndAFarRayKeepTheirDigits) {
 TEST(Surfaces, BoxesAreMetWhereTheSurfaceIsAndNotWithinOrOutside) {
   const Vec3d origin(100, 200, 300);
   SurfaceScene scene;
-  Matrix4d place;
-  place.setTranslation(origin);
-  scene.shapes.push_back(shape_of(triangle_sphere(1, 24, false), place, 0));
-  scene.shapes.push_back(shape_of(Sphere{1}, place, 1));
-  scene.shapes.push_back(shape_of(Cylinder{1, -1, 1}, place, 2));
-  scene.shapes.push_back(shape_of(Disk{0, 1, 0.5}, place, 3));
-  scene.shapes.push_back(shape_of(bent_patch(), place, 4));
+  Matrix4d object_to_world;
+  object_to_world.setTranslation(origin);
+  scene.shapes.push_back(shape_of(triangle_sphere(1, 24, false), object_to_world, 0));
+  scene.shapes.push_back(shape_of(Sphere{1}, object_to_world, 1));
+  scene.shapes.push_back(shape_of(Cylinder{1, -1, 1}, object_to_world, 2));
+  scene.shapes.push_back(shape_of(Disk{0, 1, 0.5}, object_to_world, 3));
+  scene.shapes.push_back(shape_of(bent_patch(), object_to_world, 4));
   scene.groups.push_back({shape_of(triangle_sphere(1, 24, false), Matrix4d(), 5)});
   Matrix4d instance;
   instance.setTranslation(origin + Vec3d(10, 0, 0));
@@ -334,16 +335,16 @@ TEST(Surfaces, BoxesAreMetWhereTheSurfaceIsAndNotWithinOrOutside) {
 
 TEST(Surfaces, InsideIsEnclosedWhicheverWayTheNormalsPoint) {
   SurfaceScene scene;
-  Matrix4d place;
-  place.setTranslation(Vec3d(5, 0, 0));
+  Matrix4d object_to_world;
+  object_to_world.setTranslation(Vec3d(5, 0, 0));
   scene.shapes.push_back(shape_of(cube(1), Matrix4d(), 0));
-  scene.shapes.push_back(shape_of(Sphere{2}, place, 1));
+  scene.shapes.push_back(shape_of(Sphere{2}, object_to_world, 1));
   scene.shapes.back().reverse_orientation = true;
   // A can of three shapes.
-  place.setTranslation(Vec3d(0, 8, 0));
-  scene.shapes.push_back(shape_of(Cylinder{}, place, 2));
-  scene.shapes.push_back(shape_of(Disk{-1}, place, 3));
-  scene.shapes.push_back(shape_of(Disk{1}, place, 4));
+  object_to_world.setTranslation(Vec3d(0, 8, 0));
+  scene.shapes.push_back(shape_of(Cylinder{}, object_to_world, 2));
+  scene.shapes.push_back(shape_of(Disk{-1}, object_to_world, 3));
+  scene.shapes.push_back(shape_of(Disk{1}, object_to_world, 4));
   const Surfaces surfaces(scene, Vec3d(0));
   RandomSurfaces random(51);
   const std::array<uint32_t, 1> box = {0};
@@ -368,9 +369,9 @@ TEST(Surfaces, NothingIsMetWhereThereIsNothing) {
 }
 
 TEST(Surfaces, BoundsAreRelativeToTheOrigin) {
-  Matrix4d place;
-  place.setTranslation(Vec3d(1000, 0, 0));
-  const Box3f box = surfaces_of(shape_of(cube(1), place), {999, 0, 0}).bounds();
+  Matrix4d object_to_world;
+  object_to_world.setTranslation(Vec3d(1000, 0, 0));
+  const Box3f box = surfaces_of(shape_of(cube(1), object_to_world), {999, 0, 0}).bounds();
   EXPECT_EQ(box.min, Vec3f(0, -1, -1));
   EXPECT_EQ(box.max, Vec3f(2, 1, 1));
 }

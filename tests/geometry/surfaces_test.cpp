@@ -37,19 +37,19 @@ TEST_P(EveryShape, IsMetWhereItIsParameterisedWithTheDerivativeAndTheSideOfPbrt)
   int hits = 0;
   for (int trial = 0; trial < 20; ++trial) {
     const Vec3d origin = random.in_box(100);
-    Matrix4d place = random.transform(2, is_mirrored());
+    Matrix4d object_to_world = random.transform(2, is_mirrored());
     Matrix4d move;
     move.setTranslation(origin);
-    place = place * move;  // the shape is near the origin of the rays
-    SurfaceShape description = shape_of(shape.geometry, place, 3);
+    object_to_world = object_to_world * move;  // the shape is near the origin of the rays
+    SurfaceShape description = shape_of(shape.geometry, object_to_world, 3);
     description.reverse_orientation = is_reversed();
     const Surfaces surfaces = surfaces_of(description, origin);
     const auto world_at = [&](double u, double v) {
-      return shape.at(shape.geometry, u, v) * place - origin;
+      return shape.at(shape.geometry, u, v) * object_to_world - origin;
     };
     for (int ray = 0; ray < 200; ++ray) {
       const Vec3f from(random.in_box(6));
-      const Vec3d aim = random.in_box(1) * place - origin;
+      const Vec3d aim = random.in_box(1) * object_to_world - origin;
       const Vec3f direction((aim - Vec3d(from)).normalized() * random.uniform(0.3, 3));
       const auto hit = surfaces.intersect(from, direction, 0, kFar);
       if (!hit) continue;
@@ -85,19 +85,19 @@ TEST_P(EveryShape, IsMetWhereItIsParameterisedWithTheDerivativeAndTheSideOfPbrt)
 TEST_P(EveryShape, IsMetByEveryRayToAPointOfIt) {
   RandomSurfaces random(70 + std::get<0>(GetParam()));
   const ShapeReference shape = reference();
-  const Matrix4d place = random.transform(2, is_mirrored());
-  const Surfaces surfaces = surfaces_of(shape_of(shape.geometry, place));
+  const Matrix4d object_to_world = random.transform(2, is_mirrored());
+  const Surfaces surfaces = surfaces_of(shape_of(shape.geometry, object_to_world));
   for (int ray = 0; ray < 2000; ++ray) {
     double u = random.uniform(0.01, 0.99);
     double v = random.uniform(0.01, 0.99);
     if (std::holds_alternative<TriangleMesh>(shape.geometry) && v > u) std::swap(u, v);
-    const Vec3d target = shape.at(shape.geometry, u, v) * place;
+    const Vec3d target = shape.at(shape.geometry, u, v) * object_to_world;
     const Vec3f from(target + random.direction() * random.uniform(0.1, 5));
     const Vec3f direction = Vec3f(target) - from;
     // A ray that grazes it meets it elsewhere, or misses the point by its rounding.
     constexpr double kStep = 1e-4;
     const auto moved = [&](double du, double dv) {
-      return shape.at(shape.geometry, u + du, v + dv) * place - target;
+      return shape.at(shape.geometry, u + du, v + dv) * object_to_world - target;
     };
     const Vec3d normal = moved(kStep, 0).cross(moved(0, kStep)).normalized();
     if (std::abs(normal.dot(Vec3d(direction.normalized()))) < 0.1) continue;
@@ -116,13 +116,13 @@ TEST_P(EveryShape, IsNotMetAgainByARayThatLeavesIt) {
     RandomSurfaces random(700 + std::get<0>(GetParam()));
     Matrix4d size;
     size.setScale(scale);
-    const Matrix4d place = random.transform(1, is_mirrored()) * size;
-    const Surfaces surfaces = surfaces_of(shape_of(shape.geometry, place));
+    const Matrix4d object_to_world = random.transform(1, is_mirrored()) * size;
+    const Surfaces surfaces = surfaces_of(shape_of(shape.geometry, object_to_world));
     int again = 0;
     int left = 0;
     for (int ray = 0; ray < 40000; ++ray) {
       const Vec3f from(random.in_box(4 * scale));
-      const Vec3d aim = random.in_box(1) * place;
+      const Vec3d aim = random.in_box(1) * object_to_world;
       const auto hit = surfaces.intersect(from, Vec3f((aim - Vec3d(from)).normalized()), 0, kFar);
       if (!hit) continue;
       const Vec3f onward(random.direction());

@@ -29,24 +29,24 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return {fs::directory_iterator(folder), fs::directory_iterator()};
 }
 
-std::string message_for(const fs::path& place) {
+std::string message_for(const fs::path& path) {
   try {
-    const AtomicFile file(place.string());
+    const AtomicFile file(path.string());
   } catch (const Error& error) {
     return error.what();
   }
   return "";
 }
 
-void expect_refused(const fs::path& place, const std::string& reason) {
-  const std::string message = message_for(place);
-  EXPECT_EQ(message.rfind(place.string() + ": ", 0), 0U) << message;
+void expect_refused(const fs::path& path, const std::string& reason) {
+  const std::string message = message_for(path);
+  EXPECT_EQ(message.rfind(path.string() + ": ", 0), 0U) << message;
   EXPECT_NE(message.find(reason), std::string::npos) << message;
 }
 
 class AtomicFileTest : public ::testing::TestWithParam<AtomicKind> {
  protected:
-  AtomicFile open(const fs::path& place) const { return AtomicFile(place.string(), GetParam()); }
+  AtomicFile open(const fs::path& path) const { return AtomicFile(path.string(), GetParam()); }
   TemporaryFolder folder_;
 };
 

@@ -51,16 +51,16 @@ std::string vti_data(const VtiStorage& storage, const std::string& bytes, bool e
 
 }  // namespace
 
-SampleGrid sample_places(double shift, bool turned) {
+SampleGrid sample_positions(double shift, bool turned) {
   SampleGrid grid;
   const double c = turned ? std::cos(kTurn) : 1, s = turned ? std::sin(kTurn) : 0;
   const Vec3d edges[] = {Vec3d(c, s, 0) * 0.5, Vec3d(-s, c, 0) * 0.25, Vec3d(0, 0, 2)};
-  Vec3d place(1, 2, 3);
+  Vec3d position(1, 2, 3);
   for (int axis = 0; axis < 3; ++axis) {
-    place += edges[axis] * shift;
+    position += edges[axis] * shift;
     for (int k = 0; k < 3; ++k) grid.index_to_world[axis][k] = edges[axis][k];
   }
-  for (int k = 0; k < 3; ++k) grid.index_to_world[3][k] = place[k];
+  for (int k = 0; k < 3; ++k) grid.index_to_world[3][k] = position[k];
   return grid;
 }
 
@@ -160,7 +160,9 @@ std::string load_message(const std::filesystem::path& path) {
   }
 }
 
-SampleGrid vti_samples(const VtiStorage& storage) { return sample_places(storage.cells ? 0.5 : 0); }
+SampleGrid vti_samples(const VtiStorage& storage) {
+  return sample_positions(storage.cells ? 0.5 : 0);
+}
 
 std::string vti_file(const VtiStorage& storage) {
   const SampleGrid grid = vti_samples(storage);
@@ -173,7 +175,7 @@ std::string vti_file(const VtiStorage& storage) {
   const Vec3i last = grid.counts - Vec3i(storage.cells ? 0 : 1);
   const std::string extent =
       fmt::format("{} {} 0 {} 0 {}", kFirst, kFirst + last.x, last.y, last.z);
-  const Matrix4d nodes = sample_places().index_to_world;
+  const Matrix4d nodes = sample_positions().index_to_world;
   const Vec3d origin = Vec3d(-kFirst, 0, 0) * nodes;
   const double c = std::cos(kTurn), s = std::sin(kTurn);
   const std::string group = storage.cells ? "CellData" : "PointData";
@@ -199,7 +201,7 @@ std::string vti_file(const VtiStorage& storage) {
   return text + "\n</DataArray>\n" + end + "</VTKFile>\n";
 }
 
-SampleGrid legacy_vtk_samples(bool cells) { return sample_places(cells ? 0.5 : 0, false); }
+SampleGrid legacy_vtk_samples(bool cells) { return sample_positions(cells ? 0.5 : 0, false); }
 
 std::string legacy_vtk_file(bool text, bool cells) {
   const SampleGrid grid = legacy_vtk_samples(cells);
@@ -222,7 +224,7 @@ std::string legacy_vtk_file(bool text, bool cells) {
 }
 
 std::string nrrd_file(const std::string& encoding, bool big_endian) {
-  const SampleGrid grid = sample_places();
+  const SampleGrid grid = sample_positions();
   const std::vector<double> values = affine_values(grid);
   const Matrix4d& m = grid.index_to_world;
   std::string text = fmt::format(
@@ -238,7 +240,7 @@ std::string nrrd_file(const std::string& encoding, bool big_endian) {
 }
 
 std::string metaimage_file(bool packed, bool big_endian) {
-  const SampleGrid grid = sample_places();
+  const SampleGrid grid = sample_positions();
   const double c = std::cos(kTurn), s = std::sin(kTurn);
   const std::string bytes =
       stored<float>(affine_values(grid), big_endian ? std::endian::big : std::endian::little);
@@ -254,25 +256,25 @@ std::string metaimage_file(bool packed, bool big_endian) {
 
 std::string nifti_file(int version, bool quaternion, bool big_endian) {
   const std::endian order = big_endian ? std::endian::big : std::endian::little;
-  const SampleGrid grid = sample_places();
+  const SampleGrid grid = sample_positions();
   const bool second = version == 2;
   std::string header(second ? 544 : 352, '\0');
-  const auto put = [&](std::size_t place, const std::string& bytes) {
-    header.replace(place, bytes.size(), bytes);
+  const auto put = [&](std::size_t offset, const std::string& bytes) {
+    header.replace(offset, bytes.size(), bytes);
   };
-  const auto put_real = [&](std::size_t first_place, std::size_t second_place, std::size_t i,
+  const auto put_real = [&](std::size_t first_offset, std::size_t second_offset, std::size_t i,
                             double value) {
     if (second) {
-      put(second_place + 8 * i, number_bytes(value, order));
+      put(second_offset + 8 * i, number_bytes(value, order));
     } else {
-      put(first_place + 4 * i, number_bytes(static_cast<float>(value), order));
+      put(first_offset + 4 * i, number_bytes(static_cast<float>(value), order));
     }
   };
-  const auto put_code = [&](std::size_t first_place, std::size_t second_place, int code) {
+  const auto put_code = [&](std::size_t first_offset, std::size_t second_offset, int code) {
     if (second) {
-      put(second_place, number_bytes(static_cast<int32_t>(code), order));
+      put(second_offset, number_bytes(static_cast<int32_t>(code), order));
     } else {
-      put(first_place, number_bytes(static_cast<int16_t>(code), order));
+      put(first_offset, number_bytes(static_cast<int16_t>(code), order));
     }
   };
   put(0, number_bytes(static_cast<int32_t>(second ? 540 : 348), order));

@@ -20,7 +20,7 @@ struct SampleGrid {
 
 /// A grid of samples whose steps differ along all axes, turned about z if that is wanted.
 /// @param shift of the samples, in steps: 0.5 for those in cells
-SampleGrid sample_places(double shift = 0, bool turned = true);
+SampleGrid sample_positions(double shift = 0, bool turned = true);
 
 /// The function that tests sample: affine, so that the trilinear interpolant is the same between
 /// samples, and different along all axes.

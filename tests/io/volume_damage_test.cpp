@@ -78,7 +78,7 @@ bool nothing_is_loadable(const std::filesystem::path& path) {
       sane = ::testing::AssertionFailure() << "brick " << placed.brick;
       return;
     }
-    const Vec3i first = placed.place * BrickMap::kBrickSize;
+    const Vec3i first = placed.coord * BrickMap::kBrickSize;
     for (int offset = 0; offset < BrickMap::kBrickVoxels; ++offset) {
       if (map.voxels()[placed.brick * std::size_t{BrickMap::kBrickVoxels} + offset] == 0) continue;
       const Vec3i voxel = first + Vec3i(offset >> 6, offset >> 3 & 7, offset & 7);
@@ -136,15 +136,15 @@ TEST(DamagedVolumes, OneWrongByteIsAnErrorOrGivesASaneField) {
   for (const auto& path : write_small_files(folder)) {
     Bytes bytes = read_bytes(path);
     const std::size_t step = std::max<std::size_t>(1, bytes.size() / 150);
-    for (std::size_t place = 0; place < bytes.size(); place += place < kHeaders ? 1 : step) {
-      SCOPED_TRACE(path.string() + ", byte " + std::to_string(place));
-      const char whole = bytes[place];
-      bytes[place] = static_cast<char>(whole ^ kFlips[place % 3]);
+    for (std::size_t offset = 0; offset < bytes.size(); offset += offset < kHeaders ? 1 : step) {
+      SCOPED_TRACE(path.string() + ", byte " + std::to_string(offset));
+      const char whole = bytes[offset];
+      bytes[offset] = static_cast<char>(whole ^ kFlips[offset % 3]);
       write_bytes(damaged, bytes);
-      bytes[place] = whole;
+      bytes[offset] = whole;
       const auto [loaded, message] = try_to_load(damaged);
       if (loaded) {
-        ASSERT_GE(place, kMagic);
+        ASSERT_GE(offset, kMagic);
         ASSERT_TRUE(is_sane(*loaded));
         ASSERT_TRUE(is_listed(*loaded, list_grids(damaged)));
       } else {

@@ -26,10 +26,10 @@ void expect_messages(const std::string& name, const std::string& bytes,
   const TemporaryFolder folder;
   for (const Replacement& r : replacements) {
     SCOPED_TRACE(r.from + " -> " + r.to);
-    const std::size_t place = bytes.find(r.from);
-    ASSERT_NE(place, std::string::npos);
+    const std::size_t offset = bytes.find(r.from);
+    ASSERT_NE(offset, std::string::npos);
     std::string changed = bytes;
-    changed.replace(place, r.from.size(), r.to);
+    changed.replace(offset, r.from.size(), r.to);
     write_text(folder / name, changed);
     const std::string message = load_message(folder / name);
     for (const std::string& part : r.parts) {
@@ -129,7 +129,7 @@ TEST(DenseVolumeErrors, WrongNumbersOfNiftiAreNamed) {
   const TemporaryFolder folder;
   const std::string good = nifti_file(1, true);
   struct Change {
-    std::size_t place;
+    std::size_t offset;
     std::string bytes;
     std::string part;
   };
@@ -155,9 +155,9 @@ TEST(DenseVolumeErrors, WrongNumbersOfNiftiAreNamed) {
                            {256, floats(3), "no rotation"},
                            {268, floats(nan), "qoffset"},
                            {344, "ni1", ".img"}}) {
-    SCOPED_TRACE(change.place);
+    SCOPED_TRACE(change.offset);
     std::string bytes = good;
-    bytes.replace(change.place, change.bytes.size(), change.bytes);
+    bytes.replace(change.offset, change.bytes.size(), change.bytes);
     write_text(folder / "a.nii", bytes);
     const std::string message = load_message(folder / "a.nii");
     EXPECT_NE(message.find(change.part), std::string::npos) << message;

@@ -56,16 +56,16 @@ std::vector<DenseFile> dense_files() {
   }
   for (const bool big_endian : {false, true}) {
     for (const char* const encoding : {"raw", "gzip", "ascii"}) {
-      add("a.nrrd", nrrd_file(encoding, big_endian), sample_places());
+      add("a.nrrd", nrrd_file(encoding, big_endian), sample_positions());
     }
     for (const bool packed : {false, true}) {
-      add("a.mha", metaimage_file(packed, big_endian), sample_places());
+      add("a.mha", metaimage_file(packed, big_endian), sample_positions());
     }
     for (const int version : {1, 2}) {
       for (const bool quaternion : {false, true}) {
         const std::string bytes = nifti_file(version, quaternion, big_endian);
-        add("a.nii", bytes, sample_places());
-        add("a.nii.gz", testing::gzip(bytes), sample_places());
+        add("a.nii", bytes, sample_positions());
+        add("a.nii.gz", testing::gzip(bytes), sample_positions());
       }
     }
   }
@@ -89,7 +89,7 @@ TEST(DenseVolumes, ADisplacementByHalfAVoxelIsSeen) {
   const TemporaryFolder folder;
   write_text(folder / "a.vti", vti_file({.cells = true}));
   const LoadedField loaded = load_field(folder / "a.vti");
-  const Vec3d position = Vec3d(4, 4, 4) * sample_places(0).index_to_world;
+  const Vec3d position = Vec3d(4, 4, 4) * sample_positions(0).index_to_world;
   const Vec3d index = position * loaded.field.index_to_world.inverse();
   EXPECT_NEAR(loaded.field.voxels.interpolate(index), affine_density(position), 1e-4);
   EXPECT_NEAR((Vec3d(3.5, 3.5, 3.5) - index).length(), 0, 1e-9);
@@ -140,8 +140,8 @@ TEST(DenseVolumes, DamagedBytesGiveAFieldOrAnError) {
     for (int i = 0; i < 25; ++i) {
       state = state * 6364136223846793005U + 1442695040888963407U;
       std::string bytes = file.bytes;
-      const std::size_t place = (state >> 33U) % std::min<std::size_t>(bytes.size(), 700);
-      bytes[place] = static_cast<char>(state >> 20U);
+      const std::size_t offset = (state >> 33U) % std::min<std::size_t>(bytes.size(), 700);
+      bytes[offset] = static_cast<char>(state >> 20U);
       write_text(folder / file.name, bytes);
       // Another byte at the beginning may make it another format; none is empty for long.
       load_message(folder / file.name);
@@ -165,7 +165,7 @@ TEST(DenseVolumes, TimesAreChosenByNumber) {
   write_text(folder / "a.nii", bytes);
   LoadOptions options;
   const LoadedField first = load_field(folder / "a.nii", options);
-  expect_affine(first, sample_places());
+  expect_affine(first, sample_positions());
   ASSERT_EQ(first.warnings.size(), 1U);
   EXPECT_NE(first.warnings[0].find("2 times"), std::string::npos);
   options.selection = parse_grid_selection("density@1");
@@ -179,7 +179,7 @@ TEST(DenseVolumes, TimesAreChosenByNumber) {
 
 TEST(DenseVolumes, DetachedValuesAreReadBesideTheirHeader) {
   const TemporaryFolder folder;
-  const SampleGrid grid = sample_places(0, false);
+  const SampleGrid grid = sample_positions(0, false);
   const std::string values = stored<float>(affine_values(grid));
   write_text(folder / "values.raw", "12345" + values);
   write_text(folder / "a.nhdr",
@@ -197,7 +197,7 @@ TEST(DenseVolumes, DetachedValuesAreReadBesideTheirHeader) {
 
 TEST(DenseVolumes, AxesOfNrrdBeginHalfAStepBeforeCells) {
   const TemporaryFolder folder;
-  const SampleGrid grid = sample_places(0.5, false);
+  const SampleGrid grid = sample_positions(0.5, false);
   write_text(folder / "a.nrrd",
              "NRRD0004\ntype: float\ndimension: 3\nsizes: 10 9 11\naxis mins: 1 2 3\n"
              "axis maxs: 6 4.25 25\ncenters: cell cell cell\nendian: little\nencoding: raw\n\n" +
@@ -207,7 +207,7 @@ TEST(DenseVolumes, AxesOfNrrdBeginHalfAStepBeforeCells) {
 
 TEST(DenseVolumes, RawValuesNeedALayoutThatFits) {
   const TemporaryFolder folder;
-  const SampleGrid grid = sample_places(0, false);
+  const SampleGrid grid = sample_positions(0, false);
   write_text(folder / "a.raw", "123" + stored<double>(affine_values(grid), std::endian::big));
   EXPECT_NE(load_message(folder / "a.raw").find("--raw-size"), std::string::npos);
   LoadOptions options;

@@ -91,8 +91,8 @@ TEST(VolumeErrors, NanInfinityAndNegativeNameTheVoxel) {
   for (const auto& [value, text] : cases) {
     TestGrid grid = sample_grid();
     grid.voxels[3].value = value;
-    const Vec3i place = grid.voxels[3].place;
-    const std::string voxel = fmt::format("voxel ({}, {}, {}) ", place.x, place.y, place.z);
+    const Vec3i coord = grid.voxels[3].coord;
+    const std::string voxel = fmt::format("voxel ({}, {}, {}) ", coord.x, coord.y, coord.z);
     for (const std::string& message : messages_for(grid, refusing())) {
       expect_contains(message, {"grid \"density\"", voxel, text});
     }
@@ -115,14 +115,14 @@ TEST(VolumeErrors, InvalidValuesBecomeZeroWithOneWarning) {
   for (const char* name : {"a.vdb", "a.nvdb"}) {
     const LoadedField loaded = load_field(folder / name);
     EXPECT_EQ(loaded.invalid_voxels, 2U + 512U) << name;
-    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[3].place), 0);
-    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[7].place), 0);
+    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[3].coord), 0);
+    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[7].coord), 0);
     EXPECT_EQ(loaded.field.voxels.value(grid.tiles[0].origin), 0);
     ASSERT_EQ(loaded.warnings.size(), 1U);
-    const Vec3i place = grid.voxels[3].place;
+    const Vec3i coord = grid.voxels[3].coord;
     expect_contains(loaded.warnings[0],
                     {name, "density", "514 values",
-                     fmt::format("voxel ({}, {}, {}) is NaN", place.x, place.y, place.z)});
+                     fmt::format("voxel ({}, {}, {}) is NaN", coord.x, coord.y, coord.z)});
     EXPECT_TRUE(list_grids(folder / name)[0].loadable);
   }
 }
@@ -156,7 +156,7 @@ TEST(VolumeErrors, ClampingTakesNegativeAsZeroButNeverNan) {
     const LoadedField loaded = load_field(folder / name, options);
     EXPECT_EQ(loaded.clamped_voxels, 2U + 512U) << name;
     EXPECT_EQ(loaded.minimum, 0) << name;
-    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[0].place), 0);
+    EXPECT_EQ(loaded.field.voxels.value(grid.voxels[0].coord), 0);
     EXPECT_EQ(loaded.field.voxels.value(grid.tiles[0].origin), 0);
     ASSERT_EQ(loaded.warnings.size(), 1U);
     expect_contains(loaded.warnings[0], {name, "density", "514 negative"});

@@ -56,7 +56,7 @@ typename Grid::Ptr openvdb_grid(const TestGrid& grid, const TestGrid* y = nullpt
   for (std::size_t i = 0; i < grid.voxels.size(); ++i) {
     const Voxel& voxel = grid.voxels[i];
     accessor.setValueOn(
-        openvdb::Coord(voxel.place.x, voxel.place.y, voxel.place.z),
+        openvdb::Coord(voxel.coord.x, voxel.coord.y, voxel.coord.z),
         value_of_channels<Value>({voxel.value, second.voxels[i].value, third.voxels[i].value}));
   }
   return made;
@@ -141,24 +141,24 @@ TestGrid sample_grid() {
       }
     }
   }
-  for (const Vec3i& place : {Vec3i(-20, -3, 7), Vec3i(-19, -3, 7), Vec3i(40, 41, -42),
+  for (const Vec3i& coord : {Vec3i(-20, -3, 7), Vec3i(-19, -3, 7), Vec3i(40, 41, -42),
                              Vec3i(5, 5, 5), Vec3i(130, -1, 0)}) {
-    grid.voxels.push_back({place, 0.25 + 0.125 * (place.x & 3)});
+    grid.voxels.push_back({coord, 0.25 + 0.125 * (coord.x & 3)});
   }
   grid.tiles = {{Vec3i(64, 64, 64), 8, 0.75}, {Vec3i(-128, 0, 0), 128, 0.5}};
   // A voxel inside the tile's cube would split the tile, so the full leaf moves out of it.
   for (Voxel& voxel : grid.voxels) {
-    if (voxel.place.x < 0 && voxel.place.y >= 0) voxel.place.y += 256;
+    if (voxel.coord.x < 0 && voxel.coord.y >= 0) voxel.coord.y += 256;
   }
   return grid;
 }
 
-double value_of(const TestGrid& grid, const Vec3i& place) {
+double value_of(const TestGrid& grid, const Vec3i& coord) {
   for (const Voxel& voxel : grid.voxels) {
-    if (voxel.place == place) return voxel.value;
+    if (voxel.coord == coord) return voxel.value;
   }
   for (const TestTile& tile : grid.tiles) {
-    const Vec3i inside = place - tile.origin;
+    const Vec3i inside = coord - tile.origin;
     const auto in = [&](int part) { return part >= 0 && part < tile.size; };
     if (in(inside.x) && in(inside.y) && in(inside.z)) return tile.value;
   }

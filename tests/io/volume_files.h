@@ -41,7 +41,7 @@ enum class Codec { kNone, kZip, kBlosc };
 
 /// A voxel of a test grid.
 struct Voxel {
-  Vec3i place = Vec3i(0, 0, 0);
+  Vec3i coord = Vec3i(0, 0, 0);
   double value = 0;
 };
 

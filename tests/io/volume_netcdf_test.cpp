@@ -231,9 +231,9 @@ TEST(NetcdfVolumes, OtherOrdersOfDimensionsAndFallingCoordinatesAreTheSamePlaces
   find_variable(variables, "x").values = even(kNx, 300, -50);
   write_netcdf(folder / "a.nc", variables);
   const LoadedField falling = load_named(folder / "a.nc");
-  const Vec3d place(150, 225, 340);
+  const Vec3d point(150, 225, 340);
   const double at =
-      falling.field.voxels.interpolate(place * falling.field.index_to_world.inverse());
+      falling.field.voxels.interpolate(point * falling.field.index_to_world.inverse());
   EXPECT_NEAR(at, extinction(0, 1, 1, 3), 1e-6 * at);
 }
 

@@ -160,7 +160,7 @@ class OldWriter {
     }
     throw std::logic_error("transforms before version 219 are not written");
   }
-  uint64_t place() { return static_cast<uint64_t>(bytes_.tellp()); }
+  uint64_t offset() { return static_cast<uint64_t>(bytes_.tellp()); }
   std::string text() const { return bytes_.str(); }
 
  private:
@@ -303,8 +303,8 @@ std::vector<Vec3d> write_vdb_old(const std::filesystem::path& path, uint32_t ver
   out.put_text("density");
   out.put_text("Tree_float_5_4_3");
   out.put_text("");
-  const uint64_t places = out.place();
-  const uint64_t begin = places + 3 * sizeof(int64_t);
+  const uint64_t table = out.offset();
+  const uint64_t begin = table + 3 * sizeof(int64_t);
   OldWriter body(version, compressed);
   body.put(uint32_t{1});  // metadata of the grid
   body.put_text("class");
@@ -322,11 +322,11 @@ std::vector<Vec3d> write_vdb_old(const std::filesystem::path& path, uint32_t ver
     for (int axis = 0; axis < 3; ++axis) body.put(child.getCoord()[axis]);
     body.put_topology(*child);
   }
-  const uint64_t blocks = begin + body.place();
+  const uint64_t blocks = begin + body.offset();
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) body.put_leaf(*leaf);
   out.put(static_cast<int64_t>(begin));
   out.put(static_cast<int64_t>(blocks));
-  out.put(static_cast<int64_t>(begin + body.place()));
+  out.put(static_cast<int64_t>(begin + body.offset()));
   std::ofstream file(path, std::ios::binary);
   file << out.text() << body.text();
   return points_around();

@@ -19,9 +19,9 @@ using namespace testing_volumes;  // NOLINT(google-build-using-namespace)
 void expect_same(const TestGrid& grid, const LoadedField& loaded, double tolerance) {
   const BrickMap& map = loaded.field.voxels;
   for (const Voxel& voxel : grid.voxels) {
-    ASSERT_NEAR(map.value(voxel.place), voxel.value, tolerance * (std::abs(voxel.value) + 1));
+    ASSERT_NEAR(map.value(voxel.coord), voxel.value, tolerance * (std::abs(voxel.value) + 1));
     for (int axis = 0; axis < 3; ++axis) {
-      Vec3i beside = voxel.place;
+      Vec3i beside = voxel.coord;
       ++beside[axis];
       const double expected = value_of(grid, beside);
       ASSERT_NEAR(map.value(beside), expected, tolerance * (std::abs(expected) + 1));

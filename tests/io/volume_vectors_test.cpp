@@ -76,7 +76,7 @@ TEST(VectorGrids, AreThreeFieldsOfOneLayoutUnderEveryTypeAndCodec) {
         EXPECT_EQ(field.voxels.active_min(), Vec3i(-128, -3, -42));
         EXPECT_EQ(field.voxels.active_max(), Vec3i(130, 263, 127));
         for (const Voxel& voxel : channels[c].voxels) {
-          ASSERT_NEAR(field.voxels.value(voxel.place), voxel.value,
+          ASSERT_NEAR(field.voxels.value(voxel.coord), voxel.value,
                       written.tolerance * (voxel.value + 1));
         }
         for (const TestTile& tile : channels[c].tiles) {

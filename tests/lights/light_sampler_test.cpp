@@ -25,9 +25,9 @@ std::vector<LightBounds> random_lights(std::size_t count) {
     LightBounds light;
     const float u0 = random.uniform();
     const Vec3f cluster(static_cast<float>(i % 3) * 5, 0, static_cast<float>(i % 2) * 3);
-    const Vec3f place = cluster + Vec3f(random.uniform(), random.uniform(), random.uniform());
+    const Vec3f center = cluster + Vec3f(random.uniform(), random.uniform(), random.uniform());
     const Vec3f half = i % 4 == 0 ? Vec3f(0) : Vec3f(0.2F * random.uniform());
-    light.box = Box3f(place - half, place + half);
+    light.box = Box3f(center - half, center + half);
     if (i % 5 == 4) light.box = lights[i - 1].box;
     light.normals.axis = sample_sphere(u0, random.uniform());
     light.normals.cosine = i % 3 == 0 ? -1 : (i % 3 == 1 ? 1 : random.uniform());

@@ -27,7 +27,7 @@ using testing::grey_image;
 using testing::rough_image;
 
 /// A direction drawn towards the lights.
-struct LightSample {
+struct RgbSample {
   Vec3f direction;
   Rgb radiance;
   float pdf;
@@ -48,7 +48,7 @@ class Lights {
     return {colour(seen.radiance), seen.pdf};
   }
   float pdf(const Vec3f& direction) const { return evaluate(direction).pdf; }
-  LightSample sample(float u0, float u1, float u2) const {
+  RgbSample sample(float u0, float u1, float u2) const {
     const LightSample draw = lights_.sample(Vec3f(0), values_, u0, u1, u2);
     return {draw.direction, colour(draw.radiance), draw.pdf};
   }
@@ -123,7 +123,7 @@ void expect_samples_follow_pdf(const std::string& name, const Lights& lights) {
   for (int i = 0; i < kSamples; ++i) {
     const float u0 = random.uniform();
     const float u1 = random.uniform();
-    const LightSample sample = lights.sample(u0, u1, random.uniform());
+    const RgbSample sample = lights.sample(u0, u1, random.uniform());
     ASSERT_NEAR(sample.direction.length(), 1, 1e-6);
     ++counts[in_sun(sample.direction) ? counts.size() - 1 : bin(sample.direction)];
   }
@@ -154,7 +154,7 @@ void expect_estimates_integral(const std::string& name, const Lights& lights) {
   for (int i = 0; i < 500'000; ++i) {
     const float u0 = random.uniform();
     const float u1 = random.uniform();
-    const LightSample sample = lights.sample(u0, u1, random.uniform());
+    const RgbSample sample = lights.sample(u0, u1, random.uniform());
     double estimate = 0;
     if (sample.pdf > 0) {
       const double density = sample.pdf + kUniformSpherePdf;
@@ -219,7 +219,7 @@ TEST(Lights, ASampleCarriesWhatEvaluationGives) {
     for (int i = 0; i < 20'000; ++i) {
       const float u0 = random.uniform();
       const float u1 = random.uniform();
-      const LightSample sample = c.lights.sample(u0, u1, random.uniform());
+      const RgbSample sample = c.lights.sample(u0, u1, random.uniform());
       const LightValue value = c.lights.evaluate(sample.direction);
       const auto is_near = [](float a, float b) { return std::abs(a - b) <= 1e-3F * std::abs(b); };
       if (!is_near(sample.pdf, value.pdf)) {
@@ -239,7 +239,7 @@ TEST(Lights, ExtremesOfTheUniformNumbersAreDirections) {
     for (const float u0 : {0.0F, kLast}) {
       for (const float u1 : {0.0F, kLast}) {
         for (const float u2 : {0.0F, kLast}) {
-          const LightSample sample = c.lights.sample(u0, u1, u2);
+          const RgbSample sample = c.lights.sample(u0, u1, u2);
           EXPECT_NEAR(sample.direction.length(), 1, 1e-6) << c.name;
           EXPECT_TRUE(std::isfinite(sample.pdf)) << c.name;
         }

@@ -96,7 +96,7 @@ TEST(TextureNoise, MarbleHasTheColoursOfItsSpline) {
 }
 
 /// At a place of the world, with a normal.
-SurfacePoint at_place(const Vec3f& position, const Vec3f& normal = {0, 0, 1}) {
+SurfacePoint at_position(const Vec3f& position, const Vec3f& normal = {0, 0, 1}) {
   SurfacePoint point;
   point.position = position;
   point.normal = point.shading_normal = normal;
@@ -117,7 +117,7 @@ float value_of(const FloatTexture& texture, const SurfacePoint& point,
 }
 
 TEST(SolidTextures, AreLookedUpInTheirOwnSpace) {
-  const SurfacePoint point = at_place({1.6F, 4.4F, -1.4F});
+  const SurfacePoint point = at_position({1.6F, 4.4F, -1.4F});
   const Vec3d there(1.3, 2.2, -0.7);
   EXPECT_NEAR(value_of(FbmTexture{half(), 3, 0.25F}, point), fractal_motion(there, 0.25F, 3), 1e-6);
   EXPECT_NEAR(value_of(WrinkledTexture{half(), 3, 0.25F}, point), turbulence(there, 0.25F, 3),
@@ -126,7 +126,7 @@ TEST(SolidTextures, AreLookedUpInTheirOwnSpace) {
               std::abs(fractal_motion(there * 0.1, 0.5F, 3)) * fractal_motion(there, 0.5F, 6),
               1e-6);
   // Positions are relative to an origin.
-  EXPECT_NEAR(value_of(FbmTexture{half(), 3, 0.25F}, at_place({0.6F, 4.4F, -2.4F}), {1, 0, 1}),
+  EXPECT_NEAR(value_of(FbmTexture{half(), 3, 0.25F}, at_position({0.6F, 4.4F, -2.4F}), {1, 0, 1}),
               fractal_motion(there, 0.25F, 3), 1e-6);
 }
 
@@ -137,7 +137,7 @@ TEST(SolidTextures, MarbleIsLayersAlongY) {
     TextureTable table;
     const SpectrumTextureId id =
         table.add(SpectrumTexture(MarbleTexture{half(), 3, 0.25F, 2, variation}));
-    return table.evaluate_spectrum(id, at_place(position), rgb);
+    return table.evaluate_spectrum(id, at_position(position), rgb);
   };
   const auto expect_height = [&](const SampledSpectrum& found, double height) {
     const SampledSpectrum expected = rgb.reflectance(marble_color(static_cast<float>(height)));
@@ -158,7 +158,7 @@ TEST(SolidTextures, CheckerboardsOfCubes) {
     for (int y = -2; y < 2; ++y) {
       for (int z = -2; z < 2; ++z) {
         const SurfacePoint point =
-            at_place({2 * float(x) + 0.1F, 2 * float(y) + 1.9F, 2 * float(z) + 1});
+            at_position({2 * float(x) + 0.1F, 2 * float(y) + 1.9F, 2 * float(z) + 1});
         EXPECT_EQ(value_of(texture, point), (x + y + z) % 2 == 0 ? 1 : 2);
       }
     }

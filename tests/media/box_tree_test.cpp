@@ -12,9 +12,9 @@ namespace {
 
 TEST(BoxTree, LeavesHoldTheItemsAndLittleElse) {
   RandomStream random(9, 0, 0, 0);
-  std::vector<PlaceBox> items;
+  std::vector<GridBox> items;
   for (int i = 0; i < 2000; ++i) {
-    PlaceBox item;
+    GridBox item;
     for (int axis = 0; axis < 3; ++axis) {
       item.begin[axis] = static_cast<int>(random.uniform() * (i < 1000 ? 4000 : 300)) * 8 - 1;
       item.end[axis] = item.begin[axis] + 10;
@@ -31,7 +31,7 @@ TEST(BoxTree, LeavesHoldTheItemsAndLittleElse) {
   EXPECT_GE(held, items.size());
   EXPECT_LE(held, 2 * items.size());
   EXPECT_LE(blocks, BoxTree::kFullLeaf * static_cast<double>(held));
-  for (const PlaceBox& item : items) {
+  for (const GridBox& item : items) {
     double volume = 0;
     for (const BoxTree::Leaf& leaf : tree.leaves()) {
       double common = 1;
@@ -47,7 +47,7 @@ TEST(BoxTree, LeavesHoldTheItemsAndLittleElse) {
 
 TEST(BoxTree, RaysMeetTheLeavesThatTheyPassThroughInOrder) {
   RandomStream random(10, 0, 0, 0);
-  std::vector<PlaceBox> items;
+  std::vector<GridBox> items;
   for (int i = 0; i < 400; ++i) {
     const Vec3i at(static_cast<int>(random.uniform() * 400),
                    static_cast<int>(random.uniform() * 400),
@@ -57,7 +57,7 @@ TEST(BoxTree, RaysMeetTheLeavesThatTheyPassThroughInOrder) {
   const BoxTree tree(items);
   std::size_t met = 0;
   for (int ray = 0; ray < 300; ++ray) {
-    const PlaceBox& aim = items[static_cast<std::size_t>(ray)];
+    const GridBox& aim = items[static_cast<std::size_t>(ray)];
     Vec3d origin(random.uniform(), random.uniform(), random.uniform());
     origin *= 3200;
     Vec3d direction = Vec3d(aim.begin) + Vec3d(5) - origin;
@@ -75,7 +75,7 @@ TEST(BoxTree, RaysMeetTheLeavesThatTheyPassThroughInOrder) {
       double begin = 0;
       double end = t_max;
       for (int axis = 0; axis < 3; ++axis) {
-        const PlaceBox& box = tree.leaves()[leaf].box;
+        const GridBox& box = tree.leaves()[leaf].box;
         const double low = (box.begin[axis] - origin[axis]) / direction[axis];
         const double high = (box.end[axis] - origin[axis]) / direction[axis];
         if (direction[axis] == 0 && !(low < 0 && high > 0) && !(low > 0 && high < 0)) end = -1;

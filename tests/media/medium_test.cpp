@@ -222,10 +222,10 @@ TEST(Medium, WorldToWalkRelativeToAPointNearByHasNoDistance) {
   const Vec3i low(-14, 2, 7);
   const Vec3i high(9, 18, 20);
   const Vec3d near(11, -20, 29);
-  const auto map_at = [&](const Vec3d& place) {
-    const Matrix4d matrix = crooked_transform() * Matrix4d().setTranslation(place);
+  const auto map_at = [&](const Vec3d& origin) {
+    const Matrix4d matrix = crooked_transform() * Matrix4d().setTranslation(origin);
     const Medium medium({component_of(make_field(low, high, hash_noise, matrix))}, 4);
-    return medium.world_to_walk(near + place);
+    return medium.world_to_walk(near + origin);
   };
   const AffineMap here = map_at(Vec3d(0));
   for (const double distance : {1e6, 1e9}) {

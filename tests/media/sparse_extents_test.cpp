@@ -208,9 +208,9 @@ TEST(SparseExtents, ASolidVolumeIsOnePart) {
 
 // ---- Parts ------------------------------------------------------------------------------------
 
-bool holds(const PlaceBox& box, const Vec3d& place) {
+bool holds(const GridBox& box, const Vec3d& position) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (place[axis] < box.begin[axis] || place[axis] > box.end[axis]) return false;
+    if (position[axis] < box.begin[axis] || position[axis] > box.end[axis]) return false;
   }
   return true;
 }
@@ -236,9 +236,9 @@ TEST(SparseExtents, PartsAreDisjointAndHoldTheReachOfEveryVoxel) {
     for (int trial = 0; trial < 20; ++trial) {
       const Vec3d index =
           Vec3d(voxel) + Vec3d(random.uniform(), random.uniform(), random.uniform()) * 2 - Vec3d(1);
-      const Vec3d place = index * medium.world_to_place();  // index space is the world here
+      const Vec3d position = index * medium.world_to_grid();  // index space is the world here
       ASSERT_TRUE(std::any_of(parts.begin(), parts.end(),
-                              [&](const WalkPart& part) { return holds(part.box, place); }));
+                              [&](const WalkPart& part) { return holds(part.box, position); }));
     }
   }
 }
@@ -281,18 +281,18 @@ TEST(SparseExtents, PartsReadTheComponentsWhereTheyAreAndBoundThem) {
   RandomStream random(8, 0, 0, 0);
   for (const Medium& medium : media_in_parts()) {
     ASSERT_GT(medium.parts().size(), 1);
-    const Matrix4d to_world = medium.world_to_place().inverse();
+    const Matrix4d to_world = medium.world_to_grid().inverse();
     std::size_t hits = 0;
     for (const WalkPart& part : medium.parts()) {
       const Vec3d middle = medium.middle_of(part);
       const AffineMap to_walk = medium.world_to_walk(part, middle);
       for (int trial = 0; trial < 400; ++trial) {
-        Vec3d place;
+        Vec3d position;
         for (int axis = 0; axis < 3; ++axis) {
           const double size = part.box.end[axis] - part.box.begin[axis];
-          place[axis] = part.box.begin[axis] + random.uniform() * size;
+          position[axis] = part.box.begin[axis] + random.uniform() * size;
         }
-        const Vec3d world = place * to_world;
+        const Vec3d world = position * to_world;
         const Vec3d walk = carried(world - middle, to_walk);
         const SuperVoxels& cells = part.cells;
         Vec3i cell;

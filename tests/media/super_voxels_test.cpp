@@ -112,14 +112,14 @@ TEST(SuperVoxels, BoundTheInterpolantEverywhereInTheirCells) {
       RandomStream random(1, static_cast<uint32_t>(size), 0, 0);
       for (int i = 0; i < kPoints; ++i) {
         Vec3i cell;
-        Vec3d place;  // in the cell, [0,1)
+        Vec3d position;  // in the cell, [0,1)
         for (int axis = 0; axis < 3; ++axis) {
           cell[axis] = static_cast<int>(random.uniform() * float(cells.counts[axis]));
-          place[axis] = random.uniform();
+          position[axis] = random.uniform();
         }
         // Voxel v covers the index points v - 0.5 to v + 0.5.
         const Vec3d corner = Vec3d(cell * size + field.map.origin()) - Vec3d(0.5);
-        ASSERT_LE(excess(field.map, cells, cell, corner + place * size), 1e-9)
+        ASSERT_LE(excess(field.map, cells, cell, corner + position * size), 1e-9)
             << field.name << ", cells of " << size;
       }
     }
@@ -135,16 +135,16 @@ TEST(SuperVoxels, BoundTheInterpolantOnTheirFacesAndJustBeyond) {
       RandomStream random(2, static_cast<uint32_t>(size), 0, 0);
       for (int i = 0; i < kPoints; ++i) {
         Vec3i cell;
-        Vec3d place;
+        Vec3d position;
         for (int axis = 0; axis < 3; ++axis) {
           cell[axis] = static_cast<int>(random.uniform() * float(cells.counts[axis]));
-          place[axis] = random.uniform();
+          position[axis] = random.uniform();
         }
         // A face, an edge or a corner.
         const int fixed = 1 + static_cast<int>(random.uniform() * 7);
         const int side = static_cast<int>(random.uniform() * 8);
         for (const double beyond : {-1e-5, 0.0, 1e-5}) {
-          Vec3d p = Vec3d(cell * size + field.map.origin()) - Vec3d(0.5) + place * size;
+          Vec3d p = Vec3d(cell * size + field.map.origin()) - Vec3d(0.5) + position * size;
           for (int axis = 0; axis < 3; ++axis) {
             if ((fixed >> axis & 1) == 0) continue;
             const bool high = (side >> axis & 1) != 0;

@@ -83,8 +83,8 @@ Vec3d mapped(const Vec3d& point, const AffineMap& map) {
 }
 
 /// Index point for a place counted from the first voxel of a field's index.
-Vec3d index_of(const Field& field, const Vec3d& place) {
-  return place + Vec3d(field.voxels.origin()) - Vec3d(0.5);
+Vec3d index_of(const Field& field, const Vec3d& position) {
+  return position + Vec3d(field.voxels.origin()) - Vec3d(0.5);
 }
 
 TEST(WalkSpace, ItsMapsAgreeWithTheWayThroughTheWorld) {
@@ -167,17 +167,17 @@ TEST(WalkSpace, SuperVoxelsBoundEveryInterpolantOfEveryComponent) {
       RandomStream random(2, static_cast<uint32_t>(size), 0, 0);
       for (int i = 0; i < kPoints; ++i) {
         Vec3i cell;
-        Vec3d place;
+        Vec3d position;
         const auto beyond = static_cast<double>(i % 3) * 1e-4 / size;  // what rounding may do
         for (int axis = 0; axis < 3; ++axis) {
           cell[axis] = static_cast<int>(random.uniform() * float(cells.counts[axis]));
-          place[axis] = random.uniform();
+          position[axis] = random.uniform();
           // Every other point on a face, an edge or a corner, or just beyond.
           if (i % 2 != 0 && random.uniform() < 0.5F) {
-            place[axis] = place[axis] < 0.5 ? -beyond : 1 + beyond;
+            position[axis] = position[axis] < 0.5 ? -beyond : 1 + beyond;
           }
         }
-        ASSERT_LE(excess(medium, cell, Vec3d(cell) + place), 1e-9)
+        ASSERT_LE(excess(medium, cell, Vec3d(cell) + position), 1e-9)
             << pair.name << ", cells of " << size;
       }
     }

@@ -26,10 +26,10 @@ const Vec3d kOrigin(10, -20, 30);
 /// Two glowing lumps and a shell around nothing, in voxels that stand crookedly in the world and
 /// are no cubes.
 float lumps(const Vec3i& voxel) {
-  const Vec3d place(voxel);
-  if ((place - Vec3d(2, 3, 4)).length() < 3.5) return 2;
-  if ((place - Vec3d(20, 9, 14)).length() < 2.2) return 0.5F;
-  const double shell = (place - Vec3d(12, 12, 6)).length();
+  const Vec3d point(voxel);
+  if ((point - Vec3d(2, 3, 4)).length() < 3.5) return 2;
+  if ((point - Vec3d(20, 9, 14)).length() < 2.2) return 0.5F;
+  const double shell = (point - Vec3d(12, 12, 6)).length();
   return shell > 5 && shell < 6.2 ? 0.25F : 0.0F;
 }
 
@@ -163,10 +163,10 @@ TEST(EmissionGuide, ReachesAllThatEmits) {
     index = index * Vec3d(26, 22, 20) - Vec3d(1);
     if (fixture.density->voxels.interpolate(index) <= 1e-4) continue;
     ++glowing;
-    const Vec3f place = apply(cells.grid.world_to_grid, fixture.at(index));
+    const Vec3f position = apply(cells.grid.world_to_grid, fixture.at(index));
     Vec3i cell;
     for (int axis = 0; axis < 3; ++axis) {
-      cell[axis] = std::clamp(static_cast<int>(place[axis]), 0, cells.grid.counts[axis] - 1);
+      cell[axis] = std::clamp(static_cast<int>(position[axis]), 0, cells.grid.counts[axis] - 1);
     }
     ASSERT_GT(cells.power[cells.grid.index(cell)], 0);
   }

@@ -36,13 +36,13 @@ Image picture(const Medium& medium, const View& view) {
 
 // All numbers are multiples of powers of two that a double holds even there.
 TEST(FarVolumes, AreTheSameBitForBitWhereNumbersAreExact) {
-  const auto picture_at = [](const Vec3d& place) {
+  const auto picture_at = [](const Vec3d& origin) {
     Matrix4d index_to_world;
     index_to_world.setScale(Vec3d(0.125));
-    index_to_world *= Matrix4d().setTranslation(place);
+    index_to_world *= Matrix4d().setTranslation(origin);
     View view;
-    view.from = place + Vec3d(-2, 1.5, 4.25);
-    view.at = place + Vec3d(0.25, 0, 0);
+    view.from = origin + Vec3d(-2, 1.5, 4.25);
+    view.at = origin + Vec3d(0.25, 0, 0);
     return picture(lump(index_to_world), view);
   };
   const Image near = picture_at(Vec3d(0));
@@ -64,11 +64,11 @@ double mean_of(const Image& image, const std::string& channel) {
 // Turned and framed, numbers are rounded. Doubles at a distance of 3e9 are 5e-7 apart, a hundred
 // thousandth of a voxel; the same random numbers lead to almost the same paths.
 TEST(FarVolumes, AreTheSameButForRoundingElsewhere) {
-  const auto picture_at = [](const Vec3d& place) {
+  const auto picture_at = [](const Vec3d& origin) {
     Matrix4d index_to_world;
     index_to_world.setScale(Vec3d(0.1, 0.07, 0.12));
     index_to_world *= Matrix4d().rotate(Vec3d(0.3, 0.5, 0.2));
-    index_to_world *= Matrix4d().setTranslation(place);
+    index_to_world *= Matrix4d().setTranslation(origin);
     const Medium medium = lump(index_to_world);
     return picture(medium, frame_box(medium.world_bounds(), UpAxis::kY, 30, 1));
   };

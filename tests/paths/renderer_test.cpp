@@ -110,10 +110,10 @@ TEST(Renderer, AnOverflowMakesTheVarianceInfinite) {
   const RenderResult result = render(medium, camera_for(medium, 4, 4), constant_light(1), settings);
   EXPECT_GT(result.counts.overflows, 0U);
   const Image image = result.film.to_image();
-  const int place = find_channel(image, "variance.R").value();
+  const int index = find_channel(image, "variance.R").value();
   bool infinite = false;
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-    infinite = infinite || std::isinf(image.values[i * image.channels.size() + place]);
+    infinite = infinite || std::isinf(image.values[i * image.channels.size() + index]);
   }
   EXPECT_TRUE(infinite);
 }

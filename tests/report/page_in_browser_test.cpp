@@ -288,12 +288,12 @@ TEST_F(PageInBrowser, NothingIsHiddenBesideOrBelowWhateverTheWindow) {
 
 TEST_F(PageInBrowser, ShowsAllPicturesWithoutScripts) {
   std::string bare;
-  std::size_t place = 0;
+  std::size_t offset = 0;
   while (true) {
-    const std::size_t begin = html_.find("<script>", place);
-    bare += html_.substr(place, begin - place);
+    const std::size_t begin = html_.find("<script>", offset);
+    bare += html_.substr(offset, begin - offset);
     if (begin == std::string::npos) break;
-    place = html_.find("</script>", begin) + 9;
+    offset = html_.find("</script>", begin) + 9;
   }
   EXPECT_EQ(probe(bare, R"js(
     const shown = [...document.querySelectorAll('.picture-grid img, .maps img')].filter(

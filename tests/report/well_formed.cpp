@@ -33,11 +33,11 @@ std::string attributes_fault(std::string text) {
 std::string xml_fault(const std::string& text) {
   static const std::regex kName("^[A-Za-z_:][\\w:.\\-]*");
   std::vector<std::string> open;
-  std::size_t place = 0;
+  std::size_t offset = 0;
   bool had_root = false;
-  while (place < text.size()) {
-    const std::size_t begin = text.find('<', place);
-    const std::string between = text.substr(place, begin - place);
+  while (offset < text.size()) {
+    const std::size_t begin = text.find('<', offset);
+    const std::string between = text.substr(offset, begin - offset);
     if (has_bad_reference(between)) return "unknown reference in: " + between;
     if (open.empty() && between.find_first_not_of(" \n\t") != std::string::npos) {
       return "text outside of the root: " + between;
@@ -46,7 +46,7 @@ std::string xml_fault(const std::string& text) {
     const std::size_t end = text.find('>', begin);
     if (end == std::string::npos) return "no end of " + text.substr(begin, 40);
     std::string tag = text.substr(begin + 1, end - begin - 1);
-    place = end + 1;
+    offset = end + 1;
     if (!tag.empty() && tag[0] == '/') {
       if (open.empty() || open.back() != tag.substr(1)) return "closes what is not open: " + tag;
       open.pop_back();

@@ -14,8 +14,8 @@ namespace {
 
 struct Broken {
   const char* text;
-  const char* place;    ///< file:line:column
-  const char* message;  ///< A piece of it.
+  const char* location;  ///< file:line:column
+  const char* message;   ///< A piece of it.
 };
 
 const std::map<std::string, std::string>& files_beside() {
@@ -40,7 +40,7 @@ const std::map<std::string, std::string>& files_beside() {
 void expect_error(const Broken& broken) {
   SCOPED_TRACE(broken.text);
   const std::string message = error_of(broken.text, files_beside());
-  const std::string start = std::string(broken.place) + ": ";
+  const std::string start = std::string(broken.location) + ": ";
   EXPECT_EQ(message.rfind(start, 0), 0U) << message << " does not begin with " << start;
   EXPECT_NE(message.find(broken.message), std::string::npos) << message;
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;

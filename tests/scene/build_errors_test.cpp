@@ -32,13 +32,13 @@ std::string message_of(const std::string& text) {
 
 struct BrokenScene {
   const char* text;
-  const char* place;  // line:column
+  const char* location;  // line:column
   const char* words;
 };
 
-void expect_error(const std::string& text, const std::string& place, const std::string& words) {
+void expect_error(const std::string& text, const std::string& location, const std::string& words) {
   const std::string message = message_of(text);
-  const std::string begin = "scene.pbrt:" + place + ": ";
+  const std::string begin = "scene.pbrt:" + location + ": ";
   EXPECT_EQ(message.substr(0, begin.size()), begin) << text << "\n  " << message;
   EXPECT_NE(message.find(words), std::string::npos) << text << "\n  " << message;
   EXPECT_EQ(message.find("scene.pbrt", 1), std::string::npos) << message;
@@ -85,7 +85,7 @@ const BrokenScene kPictures[] = {
 
 TEST(BuildErrors, OfThePicture) {
   for (const BrokenScene& broken : kPictures) {
-    expect_error(std::string(broken.text) + "\nWorldBegin", broken.place, broken.words);
+    expect_error(std::string(broken.text) + "\nWorldBegin", broken.location, broken.words);
   }
 }
 
@@ -129,7 +129,7 @@ TEST(BuildErrors, OfMedia) {
   for (const BrokenScene& broken : kMedia) {
     expect_error(
         R"(MakeNamedMedium "m" "string type" )" + std::string(broken.text) + "\nWorldBegin",
-        broken.place, broken.words);
+        broken.location, broken.words);
   }
 }
 
@@ -152,7 +152,7 @@ const BrokenScene kLights[] = {
 
 TEST(BuildErrors, OfLights) {
   for (const BrokenScene& broken : kLights) {
-    expect_error("WorldBegin\n" + std::string(broken.text), broken.place, broken.words);
+    expect_error("WorldBegin\n" + std::string(broken.text), broken.location, broken.words);
   }
 }
 
@@ -202,7 +202,7 @@ const BrokenScene kShapes[] = {
 
 TEST(BuildErrors, OfShapes) {
   for (const BrokenScene& broken : kShapes) {
-    expect_error("WorldBegin\nShape " + std::string(broken.text), broken.place, broken.words);
+    expect_error("WorldBegin\nShape " + std::string(broken.text), broken.location, broken.words);
   }
 }
 
@@ -270,7 +270,7 @@ TEST(BuildErrors, InvalidPixelsAreZeroWithAWarningOrRefused) {
 /// A scene of which one thing is said, but that is rendered.
 struct DoubtfulScene {
   const char* text;
-  const char* place;
+  const char* location;
   const char* words;
 };
 
@@ -319,7 +319,7 @@ TEST(BuildWarnings, NameThePlaceAndTheTrouble) {
     build_scene(parse(doubtful.text, diagnostics), diagnostics);
     const auto warnings = diagnostics.warnings();
     ASSERT_EQ(warnings.size(), 1U) << doubtful.text;
-    const std::string begin = "scene.pbrt:" + std::string(doubtful.place) + ": ";
+    const std::string begin = "scene.pbrt:" + std::string(doubtful.location) + ": ";
     EXPECT_EQ(warnings[0].substr(0, begin.size()), begin) << doubtful.text << "\n  " << warnings[0];
     EXPECT_NE(warnings[0].find(doubtful.words), std::string::npos) << warnings[0];
   }

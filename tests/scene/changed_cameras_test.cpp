@@ -40,8 +40,8 @@ constexpr double kDiskArea = std::numbers::pi * 0.3 * 0.3;  // at a distance of 
 TEST(ChangedCamera, KeepsTheAngleOfViewThatIsNotGiven) {
   const double edge = 2 * std::tan(50 * std::numbers::pi / 360);
   const std::string scene = disk_before(R"(Camera "perspective" "float fov" 50)");
-  const CameraChange same_place{.from = Vec3d(0), .at = Vec3d(0, 0, 1)};
-  expect_share_lit("own", changed_picture(scene, same_place, 1024), kDiskArea / (edge * edge));
+  const CameraChange same_position{.from = Vec3d(0), .at = Vec3d(0, 0, 1)};
+  expect_share_lit("own", changed_picture(scene, same_position, 1024), kDiskArea / (edge * edge));
   const double wide = 2 * std::tan(70 * std::numbers::pi / 360);
   expect_share_lit("wide", changed_picture(scene, {.fov = 70}, 1024), kDiskArea / (wide * wide));
 }
@@ -95,16 +95,16 @@ std::string shell(const std::string& camera) {
 
 TEST(ChangedCamera, StandsInTheMediaOfItsPlace) {
   constexpr uint32_t kManySamples = 20000;
-  struct Place {
+  struct Position {
     const char* name;
     std::string camera;
   };
-  const Place places[] = {
+  const Position positions[] = {
       {"outside", "LookAt 0 0 -9 0 0 0 0 1 0 Camera \"perspective\""},
       {"within", R"(MediumInterface "" "fog" LookAt 0 0 -2 0 0 0 0 1 0 Camera "perspective")"},
       {"middle", "Camera \"perspective\""},
   };
-  for (const Place& own : places) {
+  for (const Position& own : positions) {
     const std::string scene = shell(own.camera);
     // From the middle it is the same way out in all directions.
     expect_share_lit(

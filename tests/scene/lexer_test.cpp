@@ -42,9 +42,9 @@ TEST(Lexer, TellsKindsApart) {
 TEST(Lexer, CountsLinesAndCharacters) {
   const std::vector<Token> tokens = tokens_of("a # \xc3\xa9\r\n\t\"\xc3\xa9\xc3\xa9\" b\n\n  [");
   ASSERT_EQ(tokens.size(), 4U);
-  const std::pair<int, int> places[] = {{1, 1}, {2, 2}, {2, 7}, {4, 3}};
+  const std::pair<int, int> locations[] = {{1, 1}, {2, 2}, {2, 7}, {4, 3}};
   for (std::size_t i = 0; i < tokens.size(); ++i) {
-    EXPECT_EQ(std::pair(tokens[i].line, tokens[i].column), places[i]) << i;
+    EXPECT_EQ(std::pair(tokens[i].line, tokens[i].column), locations[i]) << i;
   }
 }
 

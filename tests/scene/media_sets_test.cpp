@@ -66,10 +66,10 @@ TEST(MediaSets, ShadowRaysThroughRandomBodies) {
     const bool is_near = seed % 2 == 0;
     Vec3d lamp = arrangement.in_box(1);
     if (!is_near) lamp.z += 6;
-    const Vec3d place(0.13, -0.27, -3);
-    const Vec3d towards = lamp - place;
+    const Vec3d point(0.13, -0.27, -3);
+    const Vec3d towards = lamp - point;
     const double distance = towards.length();
-    const double depth = arrangement.depth(place, towards / distance, 0, distance);
+    const double depth = arrangement.depth(point, towards / distance, 0, distance);
     const double irradiance = 100 * towards.z / std::pow(distance, 3);
     arrangement.shuffle();
     pool.add(

@@ -42,10 +42,10 @@ struct PeriodicVoxels {
 
   /// Extinction at a point, in voxels or between their centres.
   double at(const Vec3d& point, bool trilinear) const {
-    const Vec3d place = point * (1 / voxel);
+    const Vec3d position = point * (1 / voxel);
     const auto floor = [](double x) { return static_cast<int>(std::floor(x)); };
-    if (!trilinear) return at(Vec3i(floor(place.x), floor(place.y), floor(place.z)));
-    const Vec3d between = place - Vec3d(0.5);
+    if (!trilinear) return at(Vec3i(floor(position.x), floor(position.y), floor(position.z)));
+    const Vec3d between = position - Vec3d(0.5);
     const Vec3i base(floor(between.x), floor(between.y), floor(between.z));
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {

@@ -79,21 +79,21 @@ std::string matrix(const std::string& numbers) { return "Transform [ " + numbers
 
 TEST(SceneDirectives, Transforms) {
   const std::string turn = "0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1";
-  const std::string place = "Translate .3 -.2 .4";
+  const std::string transform = "Translate .3 -.2 .4";
   const std::string placed = matrix("1 0 0 0  0 1 0 0  0 0 1 0  .3 -.2 .4 1");
   expect_same_worlds({
       {"Identity", "Translate 5 5 5 Identity" + kThing, kThing},
-      {"Translate", place + kThing, placed + kThing},
+      {"Translate", transform + kThing, placed + kThing},
       {"Scale", "Scale .5 .7 -.9" + kThing,
        matrix(".5 0 0 0  0 .7 0 0  0 0 -.9 0  0 0 0 1") + kThing},
       {"Rotate", "Rotate 90 0 0 2" + kThing, matrix(turn) + kThing},
       // Right is up x ahead = z x -x = -y; the matrix takes the world to the view.
       {"LookAt", "LookAt .4 .2 0  0 .2 0  0 0 1" + kThing,
        matrix("0 0 -1 0  -1 0 0 0  0 1 0 0  .2 0 .4 1") + kThing},
-      {"ConcatTransform", place + " ConcatTransform [ " + turn + " ]" + kThing,
-       place + " Rotate 90 0 0 1" + kThing},
+      {"ConcatTransform", transform + " ConcatTransform [ " + turn + " ]" + kThing,
+       transform + " Rotate 90 0 0 1" + kThing},
       {"CoordSysTransform",
-       place + R"( CoordinateSystem "here" Rotate 50 1 1 0 CoordSysTransform "here")" + kThing,
+       transform + R"( CoordinateSystem "here" Rotate 50 1 1 0 CoordSysTransform "here")" + kThing,
        placed + kThing},
       {"camera", "CoordSysTransform \"camera\" Translate .3 -.2 4.4" + kThing, placed + kThing},
       {"world", "Translate 9 9 9 CoordSysTransform \"world\"" + kThing, kThing},
@@ -102,7 +102,8 @@ TEST(SceneDirectives, Transforms) {
        "ActiveTransform All Translate 0 -.2 0" +
            kThing,
        placed + kThing},
-      {"motion", "ActiveTransform EndTime Translate 1 1 1 ActiveTransform All " + place + kThing,
+      {"motion",
+       "ActiveTransform EndTime Translate 1 1 1 ActiveTransform All " + transform + kThing,
        placed + kThing, 1},
       {"ReverseOrientation", "ReverseOrientation ReverseOrientation" + kThing, kThing},
   });

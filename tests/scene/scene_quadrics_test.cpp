@@ -70,13 +70,13 @@ TEST(SceneQuadric, PartsOfASphere) {
 }
 
 /// A surface of parameters from 0 to 1 as triangles.
-template <class Place>
-std::string mesh_of(const Place& place, int columns, int rows) {
+template <class PointAt>
+std::string mesh_of(const PointAt& point_at, int columns, int rows) {
   std::string points;
   std::string indices;
   for (int row = 0; row <= rows; ++row) {
     for (int column = 0; column <= columns; ++column) {
-      const Vec3d p = place(double(column) / columns, double(row) / rows);
+      const Vec3d p = point_at(double(column) / columns, double(row) / rows);
       points += fmt::format("{} {} {} ", p.x, p.y, p.z);
       if (row == rows || column == columns) continue;
       const int a = row * (columns + 1) + column;

@@ -119,14 +119,15 @@ TEST(SceneShapeTwins, InstancesAreTheShapesWrittenOut) {
       R"(AttributeBegin Material "dielectric" Translate .5 .3 0 Shape "sphere" "float radius" )"
       ".3 AttributeEnd\n" +
       medium_box("m", Vec3d(-0.9, -0.2, -0.5), Vec3d(-0.65, 0.9, 0.5));
-  const char* const places[] = {"Translate -.7 .5 0 Rotate 40 0 1 0 ",
-                                "Translate .6 -.8 .5 Scale 1.3 .8 1 ",
-                                "Translate .9 .7 .2 Scale -.6 .6 .6 "};
+  const char* const transforms[] = {"Translate -.7 .5 0 Rotate 40 0 1 0 ",
+                                    "Translate .6 -.8 .5 Scale 1.3 .8 1 ",
+                                    "Translate .9 .7 .2 Scale -.6 .6 .6 "};
   std::string written = kFog;
   std::string instances = kFog + "ObjectBegin \"things\"\n" + things + "ObjectEnd\n";
-  for (const std::string place : places) {
-    written += fmt::format("AttributeBegin {}{}AttributeEnd\n", place, things);
-    instances += fmt::format("AttributeBegin {}ObjectInstance \"things\" AttributeEnd\n", place);
+  for (const std::string transform : transforms) {
+    written += fmt::format("AttributeBegin {}{}AttributeEnd\n", transform, things);
+    instances +=
+        fmt::format("AttributeBegin {}ObjectInstance \"things\" AttributeEnd\n", transform);
   }
   expect_twins("instances", stage(written), stage(instances));
 }

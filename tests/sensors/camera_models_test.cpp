@@ -127,11 +127,11 @@ TEST(PerspectiveCamera, SamplesTheLensUniformly) {
 
 TEST(OrthographicCamera, SendsParallelRaysFromTheScreen) {
   const Camera camera(OrthographicCamera{}, kIdentity, 200, 100);
-  for (const auto& [x, y, place] :
+  for (const auto& [x, y, position] :
        {std::tuple{0.0F, 0.0F, Vec3d(-2, 1, 0)}, std::tuple{200.0F, 100.0F, Vec3d(2, -1, 0)},
         std::tuple{150.0F, 50.0F, Vec3d(1, 0, 0)}}) {
     const CameraRay ray = camera.ray(x, y, 0.1F, 0.2F);
-    EXPECT_LE((ray.origin - place).length(), 1e-6);
+    EXPECT_LE((ray.origin - position).length(), 1e-6);
     expect_near(ray.direction, {0, 0, 1});
   }
   const Camera window(OrthographicCamera{.screen_window = {{3, 5, -1, 8}}}, kIdentity, 4, 4);
@@ -141,14 +141,14 @@ TEST(OrthographicCamera, SendsParallelRaysFromTheScreen) {
 TEST(OrthographicCamera, FocusesOnThePointsThatItShowsWithoutALens) {
   const Camera camera(OrthographicCamera{.lens = {.radius = 0.4, .focal_distance = 5}}, kIdentity,
                       20, 20);
-  const Vec3d place(0.5, -0.5, 0);
+  const Vec3d position(0.5, -0.5, 0);
   RandomStream random(3, 0, 0, 0);
   for (int i = 0; i < 200; ++i) {
     const float u = random.uniform();
     const Vec3d hit = at_depth(camera.ray(15, 15, u, random.uniform()), 5);
     EXPECT_LE((hit - Vec3d(0.5, -0.5, 5)).length(), 1e-5);
   }
-  expect_uniform_on_disk(camera, 15, 15, place, 0.4);
+  expect_uniform_on_disk(camera, 15, 15, position, 0.4);
 }
 
 TEST(SphericalCamera, LaysLongitudeAndLatitudeOnTheFilm) {

@@ -146,12 +146,12 @@ TEST(SkyDirection, IsACompass) {
 // A point on a ray is where the ray is on the film, in coordinates from -1 to 1.
 TEST(Camera, CoordinatesOfPointsOnRaysAreThoseOfTheFilm) {
   const View view{{3, 2, 7}, {0.5, 1, -1}, {0.1, 1, 0}, 35};
-  const Matrix4d place = world_from_camera(view);
+  const Matrix4d world_from_view = world_from_camera(view);
   for (const CameraModel& model :
        {CameraModel(pinhole(view, 64, 40)), CameraModel(PerspectiveCamera{.fov = 50}),
         CameraModel(PerspectiveCamera{.fov = 50, .screen_window = ScreenWindow{-1, 0.5, -0.2, 2}}),
         CameraModel(OrthographicCamera{.screen_window = ScreenWindow{-1, 0.5, -0.2, 2}})}) {
-    const Camera camera(model, place, 64, 40);
+    const Camera camera(model, world_from_view, 64, 40);
     const Matrix4d ndc = camera.ndc_from_world().value();
     for (const auto& [x, y] :
          {std::pair(0.0F, 0.0F), std::pair(64.0F, 40.0F), std::pair(20.0F, 5.0F)}) {
@@ -170,7 +170,7 @@ TEST(Camera, CoordinatesOfPointsOnRaysAreThoseOfTheFilm) {
       }
     }
   }
-  EXPECT_FALSE(Camera(SphericalCamera{}, place, 8, 4).ndc_from_world());
+  EXPECT_FALSE(Camera(SphericalCamera{}, world_from_view, 8, 4).ndc_from_world());
 }
 
 }  // namespace

@@ -212,9 +212,9 @@ TEST(PixelEstimates, RefusesWhatIsNotFinite) {
 
 TEST(HeatMap, RunsFromDarkToBright) {
   const ColorScale scale{.low = 0.01, .high = 100, .logarithmic = true};
-  EXPECT_DOUBLE_EQ(scale.place(1), 0.5);
+  EXPECT_DOUBLE_EQ(scale.position(1), 0.5);
   EXPECT_DOUBLE_EQ(scale.value(0.25), 0.1);
-  EXPECT_EQ(scale.place(0), 0);
+  EXPECT_EQ(scale.position(0), 0);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Image map = heat_map(std::vector<float>{0, 1, 1000, nan}, 4, 1, scale);
   const auto brightness = [&](int i) {

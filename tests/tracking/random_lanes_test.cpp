@@ -42,7 +42,7 @@ void fill_lane_rows(freepath::testing::LaneRows& rows) {
     hn::StoreU(exp_of_negative(hn::LoadU(kFloat, &rows.number[i])), kFloat, &rows.power[i]);
     HWY_ALIGN_MAX uint32_t sample[kLanes];
     hn::Store(hn::Iota(kUint, static_cast<uint32_t>(i)), kUint, sample);
-    const RandomPlace random = {zeros, zeros, sample, zeros, 5};
+    const RandomCounter random = {zeros, zeros, sample, zeros, 5};
     VecF uniform = random.uniform(kComponentWords, hn::Zero(kUint));
     const MaskF first = random.split(hn::LoadU(kFloat, &rows.part[i]),
                                      hn::LoadU(kFloat, &rows.rest[i]), all_lanes(), 1, uniform);

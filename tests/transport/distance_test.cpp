@@ -132,13 +132,13 @@ TEST(Distances, AnOriginNearTheFieldKeepsAllDigits) {
   for (const Vec3f& direction : directions_26()) list.add(Vec3f(0.25F), direction, 8.0F, 20);
   list.finish();
   for (const double distance : {1e6, 1e9, 1e12}) {
-    const Vec3d place(distance, -distance, 3 * distance);
+    const Vec3d position(distance, -distance, 3 * distance);
     with_every_target(
-        medium_of(box_field(1, place), 0.1F), list.stream,
+        medium_of(box_field(1, position), 0.1F), list.stream,
         [&](const FlightStream& flights, std::size_t i) {
           expect_homogeneous(flights, i, 0.1F, 8, 1e-5);
         },
-        place);
+        position);
   }
 }
 

@@ -90,10 +90,10 @@ struct GlowingMedium {
     const double value = field.voxels.interpolate(world * field.index_to_world.inverse());
     if (component == 1) return 2.0 * value;
     const auto& table = *channels.components[0].radiance[channel].table;
-    const double place =
+    const double position =
         std::clamp((value - kTableFirst) / kTableStep, 0.0, static_cast<double>(table.size() - 1));
-    const auto i = std::min(static_cast<std::size_t>(place), table.size() - 2);
-    const double part = place - static_cast<double>(i);
+    const auto i = std::min(static_cast<std::size_t>(position), table.size() - 2);
+    const double part = position - static_cast<double>(i);
     return 0.25 * (table[i] * (1 - part) + table[i + 1] * part);
   }
 

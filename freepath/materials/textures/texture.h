@@ -53,7 +53,7 @@ struct MixTexture {
   FloatInput amount = 0.5F;
 };
 
-/// The same by direction: |n · dir| of tex1, the rest of tex2, where n is the geometric normal.
+/// A mix by direction: |n · dir| of tex1, the rest of tex2, where n is the geometric normal.
 template <class Input>
 struct DirectionMixTexture {
   Input tex1, tex2;

@@ -60,7 +60,7 @@ inline TextureCoordinates mapped(const TextureMapping& mapping, const TexturePoi
   return std::visit([&](const auto& kind) { return kind(point); }, mapping);
 }
 
-/// To the space of a texture that fills it.
+/// The map to the space of a texture that fills it.
 struct SolidMapping {
   Matrix4d texture_from_world;
 

@@ -17,8 +17,8 @@ float texture_noise(const Vec3d& point);
 /// `omega` times the amplitude of the one before. The first has amplitude and frequency 1.
 float fractal_motion(const Vec3d& point, float omega, int octaves);
 
-/// The same of the absolute values of noise, and 0.2 times the amplitude of an octave that would
-/// follow, as in pbrt-v4: the mean of what is left out.
+/// The sum over octaves of the absolute values of noise, and 0.2 times the amplitude of an octave
+/// that would follow, as in pbrt-v4: the mean of what is left out.
 float turbulence(const Vec3d& point, float omega, int octaves);
 
 /// Whether a point lies in one of the dots, of radius 0.35, that about half of the squares around

@@ -43,7 +43,7 @@ class TextureTable {
   /// The value of an input that is the same everywhere.
   std::optional<float> constant(const FloatInput& input) const;
 
-  /// Those of a constant or a texture.
+  /// The value of a constant or a texture at a point.
   float evaluate(const FloatInput& input, const SurfacePoint& point) const;
   SampledSpectrum evaluate(const SpectrumInput& input, const SurfacePoint& point,
                            const SpectrumValues& spectra) const;
@@ -61,7 +61,7 @@ class TextureTable {
 
   std::vector<FloatTexture> floats_;
   std::vector<SpectrumTexture> spectra_;
-  /// Of each: how many evaluations it takes at most if nothing is remembered.
+  /// Evaluations that each texture takes at most if nothing is remembered.
   std::vector<uint64_t> float_work_, spectrum_work_;
   Vec3d origin_{0};
 };

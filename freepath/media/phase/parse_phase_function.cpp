@@ -56,12 +56,12 @@ std::array<float, kCount> parse_parameters(std::string_view function, std::strin
       fail("{}: '{}' should read {}=NUMBER", function, quote(item), fmt::join(keys, "=NUMBER or "));
     }
     const std::string_view key = trimmed(item.substr(0, equals));
-    const auto place = std::find(keys.begin(), keys.end(), key);
-    if (place == keys.end()) {
+    const auto found = std::find(keys.begin(), keys.end(), key);
+    if (found == keys.end()) {
       fail("{}: there is no parameter '{}'; it takes {}", function, quote(key),
            fmt::join(keys, " and "));
     }
-    auto& value = values[static_cast<std::size_t>(place - keys.begin())];
+    auto& value = values[static_cast<std::size_t>(found - keys.begin())];
     if (value) fail("{}: {} is given twice", function, key);
     const std::string_view digits = trimmed(item.substr(equals + 1));
     value = number<float>(digits);

@@ -15,7 +15,7 @@ namespace freepath {
 
 /// One row of a table.
 struct PhaseTablePoint {
-  double angle;  ///< Between the directions of travel before and after [degrees].
+  double angle;  ///< Angle between the directions of travel before and after [degrees].
   double value;  ///< Phase function there, in any unit: the table is normalised.
 };
 

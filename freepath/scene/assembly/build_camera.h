@@ -13,16 +13,16 @@ namespace freepath {
 
 /// What a scene wants of its picture, where whoever renders it says nothing else.
 struct PictureSettings {
-  uint32_t samples = 16;  ///< Of each pixel.
+  uint32_t samples = 16;  ///< Samples of each pixel.
   uint64_t seed = 0;
   /// Scatterings of a path; 5 in pbrt, where an integrator says nothing.
   uint32_t max_scatterings = 5;
-  std::string file_name;      ///< Of the film; may be empty.
+  std::string file_name;      ///< Name of the film's file; may be empty.
   float exposure_scale = 1;   ///< What the film's sensor multiplies radiance by.
-  Matrix3d white_balance;     ///< From R, G, B to R, G, B; that of the film's sensor.
+  Matrix3d white_balance;     ///< Map from R, G, B to R, G, B; that of the film's sensor.
   bool all_layers = false;    ///< A film of type 'gbuffer'.
-  WavelengthBuckets buckets;  ///< Of a film of type 'spectral'.
-  std::optional<Crop> crop;   ///< In fractions, which any size of the film has.
+  WavelengthBuckets buckets;  ///< Buckets of a film of type 'spectral'.
+  std::optional<Crop> crop;   ///< Crop in fractions, which any size of the film has.
   // Of our own parameters of the integrator; empty where they are not given.
   std::string tracker, transmittance;
   std::optional<Interpolation> interpolation;

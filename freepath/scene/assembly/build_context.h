@@ -29,15 +29,15 @@ struct FilmSize {
 /// What may be said about a scene from outside of its file.
 struct BuildOptions {
   std::optional<FilmSize> size = {};  ///< Replaces the film's.
-  /// For voxels and pixels that are NaN or infinite.
+  /// Policy for voxels and pixels that are NaN or infinite.
   InvalidPolicy invalid = InvalidPolicy::kZero;
   int super_voxel = 0;  ///< Edge of the super-voxels of all media [voxels], 0 for automatic.
   /// An environment replaces the scene's lights from everywhere around; the sun is added.
   Surroundings surroundings = {};
   std::optional<Ground> ground = {};  ///< Is added.
-  PeriodicSides sides = {};           ///< Along which it repeats.
+  PeriodicSides sides = {};           ///< Axes along which it repeats.
   std::optional<CameraChange> camera = {};
-  /// Of media whose statements say nothing of it [1/m per density].
+  /// Coefficients of media whose statements say nothing of them [1/m per density].
   std::optional<Rgb> sigma_a = {}, sigma_s = {};
   std::optional<PhaseFunction> phase = {};
 };
@@ -56,7 +56,7 @@ struct BuildContext {
   std::map<std::string, SpectrumTextureId, std::less<>> reflectance_textures = {};
   /// Names of spectrum textures whose colours are coefficients. A texture may be in both.
   std::map<std::string, SpectrumTextureId, std::less<>> unbounded_textures = {};
-  /// Of each of PbrtScene::materials its place in PathScene::materials; nothing for an `interface`.
+  /// Index in PathScene::materials of each of PbrtScene::materials; nothing for an `interface`.
   std::vector<std::optional<uint32_t>> materials = {};
   /// Files that statements name (file_of).
   std::vector<std::filesystem::path> files = {};
@@ -65,7 +65,7 @@ struct BuildContext {
 
 /// Which spectrum a parameter's colour stands for.
 enum class ColorMeaning {
-  kReflectance,  ///< In [0, 1].
+  kReflectance,  ///< Reflectance, in [0, 1].
   kUnbounded,    ///< A coefficient.
   kIlluminant,   ///< Light.
 };
@@ -97,9 +97,9 @@ auto at_location(const SourceLocation& location, Function function) {
     return function();
   } catch (const Error& error) {
     const std::string text = error.what();
-    const std::string place = to_string(location);
+    const std::string text_location = to_string(location);
     if (text.compare(0, location.file->size() + 1, *location.file + ":") == 0) throw;
-    throw Error(place + ": " + text);
+    throw Error(text_location + ": " + text);
   }
 }
 

@@ -141,8 +141,8 @@ class ShapeBuilder {
         continue;
       }
       built_.shapes.push_back(path_shape);
-      auto& place = shape.object ? built_.surfaces.groups[*shape.object] : built_.surfaces.shapes;
-      place.push_back(std::move(surface));
+      auto& shapes = shape.object ? built_.surfaces.groups[*shape.object] : built_.surfaces.shapes;
+      shapes.push_back(std::move(surface));
     }
   }
 

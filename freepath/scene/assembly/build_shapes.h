@@ -14,8 +14,7 @@ struct BuiltShapes {
   std::vector<AreaEmission> emissions;
   /// Shapes with an area light that let all rays through (alpha 0), so that none meets them.
   std::vector<SurfaceShape> invisible;
-  /// Of the shapes with an area light: which (of surfaces.shapes, or of invisible), and its
-  /// emission.
+  /// A shape with an area light: its index (in surfaces.shapes or invisible) and its emission.
   struct Emitter {
     std::size_t surface = 0;
     uint32_t emission = 0;

@@ -26,7 +26,7 @@ Vec3d seen_by(const Camera& camera, const Box3d& shapes) {
 Camera changed_camera(const CameraChange& change, const Camera& own, const Box3d& shapes) {
   constexpr double kUsualAngle = 40;
   View view;
-  view.from = change.from.value_or(own.place());
+  view.from = change.from.value_or(own.position());
   view.fov = change.fov ? *change.fov : own.vertical_angle().value_or(kUsualAngle);
   if (change.at) {
     view.at = *change.at;

@@ -83,12 +83,12 @@ double lattice_noise(const Vec3d& point) {
 }
 
 double CloudDensity::at(const Vec3d& point) const {
-  Vec3d place = point * frequency;
+  Vec3d position = point * frequency;
   if (wispiness > 0) {
     double strength = 0.05 * wispiness;
     double scale = 10;
     for (int octave = 0; octave < 2; ++octave) {
-      place += noise_slope(place * scale) * strength;
+      position += noise_slope(position * scale) * strength;
       strength *= 0.5;
       scale *= 1.99;
     }
@@ -97,7 +97,7 @@ double CloudDensity::at(const Vec3d& point) const {
   double strength = 0.5;
   double scale = 1;
   for (int octave = 0; octave < 5; ++octave) {
-    sum += strength * lattice_noise(place * scale);
+    sum += strength * lattice_noise(position * scale);
     strength *= 0.5;
     scale *= 1.99;
   }

@@ -16,7 +16,7 @@ double lattice_noise(const Vec3d& point);
 struct CloudDensity {
   double density = 1;
   double wispiness = 1;  ///< How far noise displaces the places where the cloud is looked up.
-  double frequency = 5;  ///< Of the coarsest noise.
+  double frequency = 5;  ///< Frequency of the coarsest noise.
   Vec3d p0{0}, p1{1};    ///< Corners of its box [medium].
 
   /// Five octaves of noise at a place that two more displace; thicker towards y = 0 and clear at

@@ -15,7 +15,7 @@ namespace freepath {
 /// Where the voxels of a grid stand: nx x ny x nz of them fill the box from p0 to p1.
 struct VoxelLayout {
   Vec3i counts;
-  Matrix4d index_to_world;  ///< Of voxel centers.
+  Matrix4d index_to_world;  ///< Transform of voxel centers.
   std::size_t voxels() const { return std::size_t(counts.x) * counts.y * counts.z; }
 };
 

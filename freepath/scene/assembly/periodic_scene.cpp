@@ -51,7 +51,7 @@ void check_boundaries(const PathScene& scene, const SurfaceScene& surfaces,
   });
   const Box3d extent = extent_of(boundaries);
   if (extent.isEmpty()) return;
-  const Vec3d camera = scene.camera->place();
+  const Vec3d camera = scene.camera->position();
   for (int axis = 0; axis < 3; ++axis) {
     if (!sides.axes[axis]) continue;
     const double low = sides.extents->min[axis];

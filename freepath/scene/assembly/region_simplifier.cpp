@@ -33,12 +33,12 @@ Box3d core_of(const Box3d& reach, const Vec3d& origin) {
 }
 
 /// The corner of a box that a place is, a bit for each axis; nothing if it is none.
-std::optional<uint32_t> corner_of(const Box3d& box, const Vec3d& place) {
+std::optional<uint32_t> corner_of(const Box3d& box, const Vec3d& point) {
   uint32_t corner = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (place[axis] == box.max[axis]) {
+    if (point[axis] == box.max[axis]) {
       corner |= 1U << axis;
-    } else if (place[axis] != box.min[axis]) {
+    } else if (point[axis] != box.min[axis]) {
       return std::nullopt;
     }
   }
@@ -161,10 +161,10 @@ class Simplifier {
           entry.count - std::min(entry.count, scene_.camera_media.count(entry.medium)));
     }
     // On its way to where it stands now it crosses boundaries as any ray does.
-    const Vec3f way = Vec3f(scene_.camera->place() - scene_.origin) - stood_;
+    const Vec3f way = Vec3f(scene_.camera->position() - scene_.origin) - stood_;
     if (way == Vec3f(0)) return;
     for (const BoundaryCrossing& crossing : traced.all_crossings(stood_, way)) {
-      if (crossing.place.t >= 1) break;
+      if (crossing.position.t >= 1) break;
       scene_.shapes[crossing.shape].cross(scene_.camera_media, crossing.enters);
     }
   }

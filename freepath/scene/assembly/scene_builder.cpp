@@ -21,7 +21,7 @@ namespace {
 /// Rays know places in single precision, and products of coordinates have to fit it too.
 constexpr double kFarthest = 1e15;
 
-void check_places(const PbrtScene& pbrt, const Box3d& box, const char* what) {
+void check_extent(const PbrtScene& pbrt, const Box3d& box, const char* what) {
   for (int axis = 0; axis < 3; ++axis) {
     const double farthest = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
     if (farthest < kFarthest) continue;
@@ -117,7 +117,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   scene.white_balance = Imath::M33f(built.picture.white_balance);
   name_media(context);
   build_camera(context, options.size.value_or(size));
-  const Vec3d stood = scene.camera->place();  // where the file puts it, and says what is around
+  const Vec3d stood = scene.camera->position();  // where the file puts it, and says what is around
   build_textures(context);
   build_materials(context);
   BuiltShapes shapes = build_shapes(context);
@@ -127,7 +127,7 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
   if (options.camera) scene.camera = changed_camera(*options.camera, *scene.camera, standing);
   Box3d extent = standing;
   extent.extendBy(stood);
-  extent.extendBy(scene.camera->place());
+  extent.extendBy(scene.camera->position());
   if (options.sides.extents) {  // fog without a boundary fills the domain
     for (int axis = 0; axis < 3; ++axis) {
       if (!options.sides.axes[axis]) continue;
@@ -135,17 +135,17 @@ BuiltScene build_scene(const PbrtScene& pbrt, Diagnostics& diagnostics,
       extent.max[axis] = std::max(extent.max[axis], options.sides.extents->max[axis]);
     }
   }
-  check_places(pbrt, extent, "shapes, the camera or the domain");
+  check_extent(pbrt, extent, "shapes, the camera or the domain");
   build_media(context, extent);
   for (const SceneMedium& medium : scene.media) {
-    check_places(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
+    check_extent(pbrt, medium.bounds(), ("the medium '" + medium.name() + "'").c_str());
     if (!medium.is_homogeneous()) standing.extendBy(medium.bounds());
   }
   scene.origin = origin_of(scene, extent);
   scene.textures.set_origin(scene.origin);
   scene.shapes = shapes.shapes;
   if (options.ground) {
-    add_ground(*options.ground, standing, scene.camera->place(), scene, shapes.surfaces);
+    add_ground(*options.ground, standing, scene.camera->position(), scene, shapes.surfaces);
   }
   SceneLightsDescription lights;
   lights.lights = build_lights(context);

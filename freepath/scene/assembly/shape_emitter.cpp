@@ -16,7 +16,7 @@ class BoundsOf {
       EmitterBounds part;
       Vec3f corners[3];
       for (int corner = 0; corner < 3; ++corner) {
-        corners[corner] = place(mesh.positions[mesh.indices[i + corner]]);
+        corners[corner] = from_object(mesh.positions[mesh.indices[i + corner]]);
         part.box.extendBy(corners[corner]);
       }
       // Which of both sides it faces, a mesh with normals may decide otherwise.
@@ -33,7 +33,7 @@ class BoundsOf {
     for (std::size_t i = 0; i + 3 < mesh.indices.size(); i += 4) {
       EmitterBounds part = all_around();
       for (int corner = 0; corner < 4; ++corner) {
-        part.box.extendBy(place(mesh.positions[mesh.indices[i + corner]]));
+        part.box.extendBy(from_object(mesh.positions[mesh.indices[i + corner]]));
       }
       bounds.push_back(part);
     }
@@ -57,13 +57,15 @@ class BoundsOf {
     bounds.cosine_spread = -1;
     return bounds;
   }
-  Vec3f place(const Vec3d& point) const { return Vec3f(point * shape_.object_to_world - origin_); }
+  Vec3f from_object(const Vec3d& point) const {
+    return Vec3f(point * shape_.object_to_world - origin_);
+  }
   std::vector<EmitterBounds> box(const Vec3d& low, const Vec3d& high) const {
     EmitterBounds bounds = all_around();
     for (int corner = 0; corner < 8; ++corner) {
       bounds.box.extendBy(
-          place({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                 (corner & 4) != 0 ? high.z : low.z}));
+          from_object({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                       (corner & 4) != 0 ? high.z : low.z}));
     }
     return {bounds};
   }

@@ -14,8 +14,8 @@ class Diagnostics {
  public:
   void warn(const SourceLocation& location, const std::string& text);
 
-  /// In the order in which they came up: "file:line:column: text", with "(and 3 more like this)"
-  /// where the text came up again at other places.
+  /// Warnings in the order in which they came up: "file:line:column: text", with "(and 3 more like
+  /// this)" where the text came up again at other places.
   std::vector<std::string> warnings() const;
 
  private:

@@ -16,9 +16,9 @@ enum class TokenKind { kEnd, kWord, kString, kNumber, kOpenBracket, kCloseBracke
 /// A token of a scene file.
 struct Token {
   TokenKind kind = TokenKind::kEnd;
-  std::string text;         ///< Of a string, without quotes and with its escapes replaced.
-  std::string_view source;  ///< As it stands in the file; of the lexer's text.
-  double number = 0;        ///< Of a number; finite, and in the range of single precision.
+  std::string text;         ///< Text of a string, without quotes and with its escapes replaced.
+  std::string_view source;  ///< Token as it stands in the file; a part of the lexer's text.
+  double number = 0;        ///< Value of a number; finite, and in the range of single precision.
   bool is_whole = false;    ///< Whether a number is written as an integer, with digits alone.
   int line = 1, column = 1;
   int file = 0;  ///< Number of the file that it stands in, the lexer's.

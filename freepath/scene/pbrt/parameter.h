@@ -28,7 +28,7 @@ enum class ParameterType {
   kBlackbody,
 };
 
-/// As it is written in a scene: "point3".
+/// Name of a type as it is written in a scene: "point3".
 std::string_view name_of(ParameterType type);
 
 /// The type of this name, also by the older names "point", "vector" and "normal".
@@ -62,7 +62,7 @@ struct NamedSpectrum {
 /// Samples to be connected by straight lines.
 struct SpectrumSamples {
   std::vector<double> wavelengths;  ///< Increasing [nm].
-  std::vector<double> values;       ///< As many.
+  std::vector<double> values;       ///< Numbers, numbers_per_value() for each value.
 };
 
 /// A spectrum in any of the ways in which a scene can give one. Samples are shared, since many
@@ -86,7 +86,7 @@ struct Parameter {
   std::string name;
   SourceLocation location;
   Values values;
-  ColorSpace color_space = ColorSpace::kSrgb;  ///< Of rgb values.
+  ColorSpace color_space = ColorSpace::kSrgb;  ///< Colour space of rgb values.
 };
 
 }  // namespace freepath

@@ -77,9 +77,9 @@ class ParameterList {
   /// The place of the statement.
   const SourceLocation& location() const { return location_; }
 
-  /// Those of the statement itself, in the order of the scene.
+  /// Parameters of the statement itself, in the order of the scene.
   const SharedParameters& own() const { return own_; }
-  /// Those, and the inherited ones that they do not hide.
+  /// Parameters of the statement, and the inherited ones that they do not hide.
   SharedParameters all() const;
 
   /// Names every parameter of the statement that nobody has asked for, with the nearest of the

@@ -258,11 +258,11 @@ ParameterList parse_parameters(TokenStream& tokens, const ParameterContext& cont
   ParameterList list(owner, location);
   for (std::size_t count = 0; tokens.peek().kind == TokenKind::kString; ++count) {
     const Token token = tokens.next();
-    const SourceLocation place = tokens.location(token);
+    const SourceLocation location = tokens.location(token);
     if (count == kMostParameters) {
-      fail_at(place, "{} has more than {} parameters", owner, kMostParameters);
+      fail_at(location, "{} has more than {} parameters", owner, kMostParameters);
     }
-    list.add(parse_values(tokens, context, parse_declaration(token, place), place));
+    list.add(parse_values(tokens, context, parse_declaration(token, location), location));
   }
   return list;
 }
@@ -270,14 +270,15 @@ ParameterList parse_parameters(TokenStream& tokens, const ParameterContext& cont
 std::shared_ptr<const Parameter> parse_option(TokenStream& tokens,
                                               const ParameterContext& context) {
   const Token token = tokens.next();
-  const SourceLocation place = tokens.location(token);
+  const SourceLocation location = tokens.location(token);
   const std::vector<std::string> words = words_of(token.text);
   if (token.kind != TokenKind::kString || words.empty() || words.size() > 2) {
-    fail_at(place, "Option expects the name of an option as a string, found {}", describe(token));
+    fail_at(location, "Option expects the name of an option as a string, found {}",
+            describe(token));
   }
   const ParameterType type =
-      words.size() == 2 ? parse_type(words[0], place) : type_of_option(tokens, words[0]);
-  return parse_values(tokens, context, {type, words.back()}, place);
+      words.size() == 2 ? parse_type(words[0], location) : type_of_option(tokens, words[0]);
+  return parse_values(tokens, context, {type, words.back()}, location);
 }
 
 std::shared_ptr<const SpectrumSamples> parse_spectrum_file(Lexer& lexer) {

@@ -13,7 +13,7 @@ namespace freepath {
 
 /// What a parameter's text means depends on.
 struct ParameterContext {
-  ColorSpace color_space = ColorSpace::kSrgb;  ///< Of rgb values.
+  ColorSpace color_space = ColorSpace::kSrgb;  ///< Colour space of rgb values.
   /// Reads the spectrum in a file that a parameter names.
   /// @throws Error, beginning with the place given, if there is no such file or it is no spectrum
   std::function<std::shared_ptr<const SpectrumSamples>(const std::string&, const SourceLocation&)>

@@ -16,7 +16,7 @@ struct ParseLimits {
   int include_depth = 32;               ///< Files open at once.
   int attribute_depth = 1000;           ///< AttributeBegin inside one another.
   std::size_t files = 100000;           ///< Read in all.
-  std::size_t file_bytes = 2000000000;  ///< Of one file, unpacked; at most 2^31 - 1.
+  std::size_t file_bytes = 2000000000;  ///< Size of one file, unpacked; at most 2^31 - 1.
 };
 
 /// Parses a scene with all that it includes. Directives, the types and counts of parameters,
@@ -28,7 +28,7 @@ PbrtScene parse_pbrt_file(const std::filesystem::path& path, Diagnostics& diagno
                           const FileReader& reader = DiskFileReader(),
                           const ParseLimits& limits = {});
 
-/// The same for the text of a main file.
+/// Parses the text of a main file.
 /// @param name of that file, for messages and for finding files beside it
 PbrtScene parse_pbrt_text(std::string text, const std::string& name, Diagnostics& diagnostics,
                           const FileReader& reader = DiskFileReader(),

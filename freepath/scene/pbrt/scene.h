@@ -19,7 +19,7 @@ struct PbrtEntity {
 
 struct PbrtCamera : PbrtEntity {
   TransformPair camera_from_world;
-  std::string medium;  ///< That it is in; empty for vacuum.
+  std::string medium;  ///< Medium that it is in; empty for vacuum.
 };
 
 struct PbrtMedium : PbrtEntity {
@@ -41,7 +41,7 @@ struct PbrtTexture : PbrtEntity {
 
 struct PbrtLight : PbrtEntity {
   TransformPair world_from_light;
-  std::string medium;  ///< That it is in; empty for vacuum.
+  std::string medium;  ///< Medium that it is in; empty for vacuum.
 };
 
 /// The emission of the shapes that refer to it.
@@ -78,9 +78,9 @@ struct PbrtScene {
   ParameterList options;
   std::optional<PbrtCamera> camera;
   std::optional<PbrtEntity> film, sampler, filter, integrator, accelerator;
-  ColorSpace color_space = ColorSpace::kSrgb;  ///< At WorldBegin, so that of the film.
-  double start_time = 0;                       ///< Of the starting transforms.
-  double end_time = 1;                         ///< Of the ending ones.
+  ColorSpace color_space = ColorSpace::kSrgb;  ///< Colour space at WorldBegin, so that of the film.
+  double start_time = 0;                       ///< Time of the starting transforms.
+  double end_time = 1;                         ///< Time of the ending transforms.
   std::vector<PbrtMedium> media;
   /// The first is the "diffuse" of shapes that come before any Material.
   std::vector<PbrtMaterial> materials;

@@ -23,7 +23,8 @@ inline constexpr std::array<std::string_view, 5> kAttributeTargets = {"shape", "
 
 /// What AttributeBegin saves and AttributeEnd restores.
 struct GraphicsState {
-  TransformPair transform;  ///< Of the coordinates in use, to the world (camera: the reverse).
+  /// Transform of the coordinates in use to the world (camera: the reverse).
+  TransformPair transform;
   bool start_active = true, end_active = true;
   bool reverse_orientation = false;
   ColorSpace color_space = ColorSpace::kSrgb;
@@ -168,7 +169,7 @@ class SceneParser {
   GraphicsState state_;
   bool in_world_ = false;
   std::vector<OpenScope> scopes_;
-  std::size_t scopes_outside_import_ = 0;  ///< Those that an imported file may not close.
+  std::size_t scopes_outside_import_ = 0;  ///< Scopes that an imported file may not close.
   std::optional<int> open_object_;
   std::map<std::string, TransformPair, std::less<>> coordinate_systems_;
 
@@ -179,9 +180,11 @@ class SceneParser {
   std::map<std::string, int, std::less<>> material_names_, medium_names_, object_names_;
   std::map<std::string, int, std::less<>> float_texture_names_, spectrum_texture_names_;
   std::vector<NameUse> material_references_, medium_references_;
-  SharedParameters attribute_parameters_;      ///< All that Attribute directives have set.
-  std::vector<std::string> shape_materials_;   ///< For each shape, the name of its material.
-  std::vector<std::string> instance_objects_;  ///< For each instance, the name of its object.
+  SharedParameters attribute_parameters_;  ///< All that Attribute directives have set.
+  /// Names of the shapes' materials, one for each shape.
+  std::vector<std::string> shape_materials_;
+  /// Names of the instances' objects, one for each instance.
+  std::vector<std::string> instance_objects_;
 };
 
 }  // namespace freepath

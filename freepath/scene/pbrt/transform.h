@@ -20,7 +20,7 @@ struct TransformPair {
 Matrix4d translation(const Vec3d& offset);
 Matrix4d scaling(const Vec3d& factors);
 
-/// By the right-hand rule.
+/// Rotation by the right-hand rule.
 /// @param angle [degrees]
 /// @param axis of any length but 0
 Matrix4d rotation(double angle, const Vec3d& axis);

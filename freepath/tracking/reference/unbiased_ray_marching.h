@@ -60,10 +60,10 @@ class UnbiasedRayMarching {
       const double jitter = uniform_double(random);
       const double spacing = residual.length() / points;
       for (int point = 0; point < points; ++point) {
-        const auto place = residual.at_length((point + jitter) * spacing);
-        const auto sigma_t = extinction<kN>(medium, medium.densities(path, place.t, random));
+        const auto here = residual.at_length((point + jitter) * spacing);
+        const auto sigma_t = extinction<kN>(medium, medium.densities(path, here.t, random));
         for (int channel = 0; channel < kN; ++channel) {
-          estimates_[channel][i] -= (sigma_t[channel] - place.control[channel]) * spacing;
+          estimates_[channel][i] -= (sigma_t[channel] - here.control[channel]) * spacing;
         }
       }
     }

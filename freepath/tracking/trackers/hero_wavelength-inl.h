@@ -56,7 +56,7 @@ struct HeroWavelength : MethodTraits {
 
   /// Draws the hero of a flight; rows[0, N) hold the relative densities of the path so far.
   template <int N>
-  HWY_INLINE void begin(const RandomPlace& random, MaskF lanes, const VecF (&weight)[N],
+  HWY_INLINE void begin(const RandomCounter& random, MaskF lanes, const VecF (&weight)[N],
                         const float* albedo, VecF* rows) const {
     if (by_throughput) {
       VecF wanted[N];

@@ -12,20 +12,20 @@
 
 namespace freepath {
 
-/// A set of media that MediaPlaces knows.
-using PlaceId = uint32_t;
+/// A set of media that MediaSetTable knows.
+using MediaSetId = uint32_t;
 
 /// Numbers the sets of media that rays come to, and remembers what crossing a boundary makes of
 /// them, so that a path carries a number and not a set. One for each thread.
-class MediaPlaces {
+class MediaSetTable {
  public:
   /// @param scene,factory must outlive this
-  MediaPlaces(const PathScene& scene, const WavelengthSampler& factory)
+  MediaSetTable(const PathScene& scene, const WavelengthSampler& factory)
       : scene_(scene), factory_(factory) {}
 
   /// The number of a set, which is made if there is none.
-  PlaceId of(const MediaSet& media) {
-    const auto [known, is_new] = numbers_.try_emplace(media, static_cast<PlaceId>(sets_.size()));
+  MediaSetId of(const MediaSet& media) {
+    const auto [known, is_new] = numbers_.try_emplace(media, static_cast<MediaSetId>(sets_.size()));
     if (is_new) {
       sets_.push_back(media);
       media_.push_back(factory_.medium_of(media));
@@ -34,18 +34,18 @@ class MediaPlaces {
   }
 
   /// The medium, or combination of media, that fills a place: WavelengthSampler::medium_of.
-  MediumId medium(PlaceId place) const { return media_[place]; }
+  MediumId medium(MediaSetId set) const { return media_[set]; }
 
   /// The media beyond the boundary of a shape.
   /// @throws Error where there are more media at once than a set holds
-  PlaceId cross(PlaceId place, uint32_t shape, bool enters) {
+  MediaSetId cross(MediaSetId set, uint32_t shape, bool enters) {
     const PathShape& boundary = scene_.shapes[shape];
-    if (boundary.inside == boundary.outside) return place;
-    Crossing& last = crossings_[(place * 31 + shape * 2 + (enters ? 1 : 0)) % kRemembered];
-    if (last.from != place || last.shape != shape) {  // its place in the table tells the side
-      MediaSet media = sets_[place];
+    if (boundary.inside == boundary.outside) return set;
+    Crossing& last = crossings_[(set * 31 + shape * 2 + (enters ? 1 : 0)) % kRemembered];
+    if (last.from != set || last.shape != shape) {  // its place in the table tells the side
+      MediaSet media = sets_[set];
       boundary.cross(media, enters);
-      last = {place, shape, of(media)};
+      last = {set, shape, of(media)};
     }
     return last.to;
   }
@@ -55,12 +55,12 @@ class MediaPlaces {
   const WavelengthSampler& factory_;
   std::vector<MediaSet> sets_;
   std::vector<MediumId> media_;
-  std::map<MediaSet, PlaceId> numbers_;
+  std::map<MediaSet, MediaSetId> numbers_;
   /// Crossings that came last to the places of a table.
   struct Crossing {
-    PlaceId from = ~PlaceId{0};
+    MediaSetId from = ~MediaSetId{0};
     uint32_t shape = 0;
-    PlaceId to = 0;
+    MediaSetId to = 0;
   };
   static constexpr uint32_t kRemembered = 256;
   std::array<Crossing, kRemembered> crossings_;

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "freepath/paths/media_places.h"
+#include "freepath/paths/media_set_table.h"
 #include "tests/scene/rendered_scenes.h"
 
 namespace freepath::testing {
 namespace {
 
 // More crossings than are remembered at once, so that they drive each other out.
-TEST(MediaPlaces, AreWhatTheSetsSay) {
+TEST(MediaSetTable, AreWhatTheSetsSay) {
   constexpr int kMedia = 5;
   constexpr int kShapes = 700;
   std::mt19937 random(3);
@@ -35,21 +35,21 @@ TEST(MediaPlaces, AreWhatTheSetsSay) {
   const PathScene& scene = built.scene;
   ASSERT_EQ(scene.shapes.size(), kShapes);
   const WavelengthSampler factory(scene, ColorMode::kRgb, 4, {});
-  MediaPlaces places(scene, factory);
+  MediaSetTable table(scene, factory);
   std::vector<MediaSet> sets(8);
-  std::vector<PlaceId> numbers(sets.size(), places.of(MediaSet()));
+  std::vector<MediaSetId> numbers(sets.size(), table.of(MediaSet()));
   for (int step = 0; step < 20'000; ++step) {
     const auto ray = static_cast<std::size_t>(any(static_cast<int>(sets.size())));
     const auto shape = static_cast<uint32_t>(any(kShapes));
     const bool enters = any(2) == 0;
     scene.shapes[shape].cross(sets[ray], enters);
-    numbers[ray] = places.cross(numbers[ray], shape, enters);
-    ASSERT_EQ(numbers[ray], places.of(sets[ray])) << step;
-    ASSERT_EQ(places.medium(numbers[ray]), factory.medium_of(sets[ray])) << step;
+    numbers[ray] = table.cross(numbers[ray], shape, enters);
+    ASSERT_EQ(numbers[ray], table.of(sets[ray])) << step;
+    ASSERT_EQ(table.medium(numbers[ray]), factory.medium_of(sets[ray])) << step;
     // Sets grow where rays enter without leaving: begin anew now and then, as paths do.
     if (any(16) == 0) {
       sets[ray] = MediaSet();
-      numbers[ray] = places.of(MediaSet());
+      numbers[ray] = table.of(MediaSet());
     }
   }
 }

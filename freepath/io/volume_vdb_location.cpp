@@ -58,12 +58,12 @@ std::string transform_bytes(const VolumeFile& file, uint64_t offset,
 
 }  // namespace
 
-VdbPlaces read_vdb_places(const VolumeFile& file, const VdbDirectory& directory,
-                          const VdbGrid& grid) {
+VdbLocation read_vdb_location(const VolumeFile& file, const VdbDirectory& directory,
+                              const VdbGrid& grid) {
   initialize_openvdb();
-  VdbPlaces places;
+  VdbLocation location;
   uint64_t offset = grid.body;
-  places.topology = grid.body;
+  location.topology = grid.body;
   const bool transform_first = directory.file_version >= kVdbInstances;
   if (!transform_first) {
     offset = skip_vdb_topology(file, grid.body, *vdb_value_format(directory, grid)).end;
@@ -71,11 +71,11 @@ VdbPlaces read_vdb_places(const VolumeFile& file, const VdbDirectory& directory,
   std::vector<std::byte> bytes;
   const std::string type = transform_bytes(file, offset, bytes);
   if (directory.file_version >= kVdbMaps && !openvdb::math::MapRegistry::isRegistered(type)) {
-    places.reason = fmt::format(
+    location.reason = fmt::format(
         "its transform is of the unknown type \"{}\"; the file is damaged "
         "or made by a newer OpenVDB",
         type);
-    return places;
+    return location;
   }
   MemoryBuffer buffer;
   buffer.reset(bytes);
@@ -88,24 +88,24 @@ VdbPlaces read_vdb_places(const VolumeFile& file, const VdbDirectory& directory,
   try {
     transform.read(stream);
   } catch (const openvdb::ArithmeticError&) {
-    places.reason = "its transform is not invertible; set another";
-    return places;
+    location.reason = "its transform is not invertible; set another";
+    return location;
   }
-  places.end = offset + buffer.taken();
-  if (transform_first) places.topology = places.end;
-  places.index_to_world = to_matrix(transform.baseMap()->getAffineMap()->getMat4());
+  location.end = offset + buffer.taken();
+  if (transform_first) location.topology = location.end;
+  location.index_to_world = to_matrix(transform.baseMap()->getAffineMap()->getMat4());
   const auto* const frustum =
       dynamic_cast<const openvdb::math::NonlinearFrustumMap*>(transform.baseMap().get());
   if (frustum != nullptr) {
-    places.frustum = frustum_map(*frustum);
-    if (!is_sound(*places.frustum)) {
-      places.frustum.reset();
-      places.reason = "its transform is a frustum without an extent; set another";
-      return places;
+    location.frustum = frustum_map(*frustum);
+    if (!is_sound(*location.frustum)) {
+      location.frustum.reset();
+      location.reason = "its transform is a frustum without an extent; set another";
+      return location;
     }
   }
-  places.reason = reason_against_transform(places.index_to_world);
-  return places;
+  location.reason = reason_against_transform(location.index_to_world);
+  return location;
 }
 
 }  // namespace freepath::io
