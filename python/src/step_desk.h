@@ -31,6 +31,7 @@ class StepDesk {
     if (callback_.is_none()) return {};
     return [this] {
       const auto [step, fraction] = latest();
+      if (step.empty()) return true;  // nothing is told yet
       return !callback_(step, fraction).is(nanobind::bool_(false));
     };
   }
