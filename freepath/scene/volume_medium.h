@@ -23,6 +23,11 @@ struct VolumeMedium {
   PeriodicSides sides = {};
 };
 
+/// Lets a component glow as a black body of temperatures, in R, G and B.
+/// @param factor multiplies its radiance
+void set_thermal_emission(const TemperatureEmission& emission, const Rgb& factor,
+                          Component& component);
+
 /// The volumes' densities as components of one medium, in their order; they may overlap anyhow.
 /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
 /// @throws Error for coefficients out of range, another number of densities in a volume than one or
