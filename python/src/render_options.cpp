@@ -9,6 +9,7 @@
 #include <nanobind/stl/string.h>
 
 #include "freepath/base/error.h"
+#include "freepath/paths/time_target.h"
 #include "freepath/scene/assembly/scene_settings.h"
 #include "freepath/transport/auto_tracker.h"
 #include "python/src/bindings.h"
