@@ -191,6 +191,19 @@ VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel, const Per
   return result;
 }
 
+VolumeMedium medium_in_channel(const VolumeMedium& medium, int channel, int super_voxel) {
+  std::vector<Component> components = medium.medium->components();
+  for (Component& component : components) {
+    component.sigma_a = Rgb(component.sigma_a[channel]);
+    component.sigma_s = Rgb(component.sigma_s[channel]);
+    component.emission = Rgb(component.emission[channel]);
+    component.radiance.fill(RadianceField(component.radiance[channel]));
+  }
+  VolumeMedium result = medium;
+  result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
+  return result;
+}
+
 void check_optical_depth(const Medium& medium) {
   for (const WalkPart& part : medium.parts()) check_depth_of_part(medium, part);
 }

@@ -35,6 +35,10 @@ void set_thermal_emission(const TemperatureEmission& emission, const Rgb& factor
 VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel,
                          const PeriodicSides& sides = {});
 
+/// The medium as it is in one of the channels R, G and B: grey.
+/// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
+VolumeMedium medium_in_channel(const VolumeMedium& medium, int channel, int super_voxel);
+
 /// Checks that single precision tells the tentative collisions of a walk through a medium apart.
 /// @throws Error, naming the densest grid, for an optical depth across it that is too large
 void check_optical_depth(const Medium& medium);

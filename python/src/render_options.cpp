@@ -33,6 +33,7 @@ RenderSettings render_settings(const PythonScene& scene, const RenderOptions& op
   settings.wavelengths = options.wavelengths;
   settings.threads = options.threads;
   settings.shadow_roulette = options.shadow_roulette;
+  settings.near_light_lines = options.near_light_lines;
   RenderWishes wishes{.samples = options.samples,
                       .seed = options.seed,
                       .max_scatterings = options.max_scatterings,
@@ -87,7 +88,8 @@ void bind_render_options(nb::module_& module) {
       .def_rw("tile", &RenderOptions::tile, nb::for_setter(nb::arg("tile").none()))
       .def_rw("wavelengths", &RenderOptions::wavelengths)
       .def_rw("threads", &RenderOptions::threads)
-      .def_rw("shadow_roulette", &RenderOptions::shadow_roulette);
+      .def_rw("shadow_roulette", &RenderOptions::shadow_roulette)
+      .def_rw("near_light_lines", &RenderOptions::near_light_lines);
 }
 
 }  // namespace freepath::python

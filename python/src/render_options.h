@@ -27,6 +27,7 @@ struct RenderOptions {
   int wavelengths = RenderSettings{}.wavelengths;
   int threads = 0;
   bool shadow_roulette = true;
+  bool near_light_lines = true;
 };
 
 /// @throws Error for a word that is none, listing those there are
