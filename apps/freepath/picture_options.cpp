@@ -151,6 +151,10 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
       .add_flag("--all-shadow-rays", o.all_shadow_rays,
                 "Cast shadow rays that bring little too, not by Russian roulette")
       ->group("Method");
+  command
+      .add_flag("--no-near-light-lines", o.no_near_light_lines,
+                "Find lights in or near media at scatterings alone, not along lines that pass them")
+      ->group("Method");
 }
 
 }  // namespace
@@ -279,6 +283,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.wavelengths = options.wavelengths;
   settings.batch = options.batch;
   settings.shadow_roulette = !options.all_shadow_rays;
+  settings.near_light_lines = !options.no_near_light_lines;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.absorption = parse_absorption(options.absorption);

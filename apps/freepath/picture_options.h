@@ -35,6 +35,7 @@ struct PictureOptions {
   std::vector<std::string> emission;
   uint32_t max_scatterings = 0;  ///< 0: no limit.
   bool all_shadow_rays = false;
+  bool no_near_light_lines = false;
   uint64_t seed = 0;
   int threads = 0;
   std::size_t batch = RenderSettings{}.batch;

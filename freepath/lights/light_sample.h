@@ -30,6 +30,8 @@ struct LightSample {
     float u = 0, v = 0;
   };
   std::optional<Area> area = {};
+  /// Number of SceneLights::within(), if it is of those.
+  std::optional<uint32_t> within = {};
   /// No ray finds this light by chance, so that the draw has the whole weight.
   bool delta = false;
 };

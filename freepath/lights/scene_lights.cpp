@@ -55,11 +55,10 @@ SceneLights::SceneLights(SceneLightsDescription description, const SpectrumTable
         light);
   }
   infinite_.finish();
-  std::vector<LightBounds> within;
-  for (const PunctualLight& light : punctual_) within.push_back(light.bounds());
+  for (const PunctualLight& light : punctual_) within_.push_back(light.bounds());
   const std::vector<LightBounds> areas = add_area_lights(description, table);
-  within.insert(within.end(), areas.begin(), areas.end());
-  chooser_ = LightSampler(within);
+  within_.insert(within_.end(), areas.begin(), areas.end());
+  chooser_ = LightSampler(within_);
   set_shares();
 }
 
@@ -203,25 +202,33 @@ LightSample SceneLights::sample_within(const Vec3f& position, const SpectrumValu
                                        float u0, float u1, float u2) const {
   const LightChoice choice = chooser_.choose(position, u2);
   if (choice.probability == 0) return {};
-  if (choice.light < punctual_.size()) {
-    LightSample draw = punctual_[choice.light].sample(position, values);
-    draw.pdf *= choice.probability;
+  LightSample draw = sample_of(choice.light, position, values, u0, u1);
+  draw.pdf *= choice.probability;
+  return draw;
+}
+
+LightSample SceneLights::sample_of(uint32_t light, const Vec3f& position,
+                                   const SpectrumValues& values, float u0, float u1) const {
+  LightSample draw;
+  if (light < punctual_.size()) {
+    draw = punctual_[light].sample(position, values);
+    draw.within = light;
     return draw;
   }
-  const auto index = choice.light - static_cast<uint32_t>(punctual_.size());
+  const auto index = light - static_cast<uint32_t>(punctual_.size());
   const Part& part = parts_[index];
   const Area& area = areas_[part.area];
   const EmitterPoint point = area.geometry->sample(index - area.first_part, position, u0, u1);
-  LightSample draw;
   const Vec3f towards = point.position - position;
   const float distance = towards.length();
   if (!(point.pdf > 0 && distance > 0)) return draw;
   draw.direction = towards * (1.0F / distance);
   draw.distance = distance;
   draw.radiance = radiance(part, point.normal, point.u, point.v, -draw.direction, values);
-  draw.pdf = choice.probability * point.pdf;
+  draw.pdf = point.pdf;
   draw.delta = area.invisible;
   draw.area = {part.area, index - area.first_part, point.normal, point.u, point.v};
+  draw.within = light;
   return draw;
 }
 

@@ -37,6 +37,19 @@ class SceneLights {
   LightSample sample(const Vec3f& position, const SpectrumValues& values, float u0, float u1,
                      float u2) const;
 
+  /// Lights within the scene, punctual ones first, then the parts of area lights; those without
+  /// power are never drawn.
+  const std::vector<LightBounds>& within() const { return within_; }
+  /// A draw of one of those lights: its density is that of the direction given the light, 1 of a
+  /// light without extent.
+  /// @param light of within()
+  LightSample sample_of(uint32_t light, const Vec3f& position, const SpectrumValues& values,
+                        float u0, float u1) const;
+  /// The probability with which sample() draws one of those lights at a position.
+  float share_of(uint32_t light, const Vec3f& position) const {
+    return within_share_ * chooser_.probability(position, light);
+  }
+
   /// What a ray sees that leaves the scene.
   LightSeen escape(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const {
     LightSeen seen = infinite_.evaluate(from, direction, values);
@@ -111,7 +124,8 @@ class SceneLights {
   std::vector<Emission> emissions_;
   std::vector<Area> areas_;
   std::vector<Part> parts_;
-  LightSampler chooser_;  // of punctual lights, then parts
+  std::vector<LightBounds> within_;  // of punctual lights, then parts
+  LightSampler chooser_;             // of those
   double distant_illuminance_ = 0;
   float infinite_share_ = 0, distant_share_ = 0, within_share_ = 0;
 };

@@ -1,7 +1,5 @@
 #include "freepath/paths/emission_tracer.h"
 
-#include <limits>
-
 #include "freepath/base/random.h"
 
 namespace freepath {
@@ -15,15 +13,7 @@ constexpr uint32_t kStreams = 0xA0000000U;
 
 void EmissionTracer::add(uint32_t owner, const ScenePath& path, const Vec3f& position,
                          const Vec3f& direction, const SampledSpectrum& weight) {
-  float length = std::numeric_limits<float>::infinity();
-  // No surface cuts the medium where it is clear.
-  const bool clear = scene_.is_clear_at(path.medium, position);
-  if (scene_.surfaces && !clear) {
-    if (const auto hit = scene_.surfaces->intersect(position, direction, 0,
-                                                    std::numeric_limits<float>::infinity())) {
-      length = hit->t;
-    }
-  }
+  const float length = scene_.way_to_surface(path.medium, position, direction);
   const Walker& walker = path.colors->walker(path.medium, path.channel);
   auto [batch, i] = batches_.add(walker, static_cast<uint32_t>(lines_.size()));
   lines_.push_back({owner, weight});

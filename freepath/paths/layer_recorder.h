@@ -18,12 +18,15 @@ class LayerRecorder {
   /// Forgets all samples, and makes room for so many.
   void begin(const Film& film, std::size_t samples) {
     samples_.assign(film.layers().has_any(kPathLayers) ? samples : 0, LayerSample{});
+    ahead_.assign(samples_.size(), Rgb(0.0F));
   }
   /// Forgets `count` samples from `first` on, and makes room for them.
   void renew(std::size_t first, std::size_t count, const Film& film) {
     if (!film.layers().has_any(kPathLayers)) return;
     samples_.resize(std::max(samples_.size(), first + count));
+    ahead_.resize(samples_.size());
     std::fill_n(samples_.begin() + static_cast<std::ptrdiff_t>(first), count, LayerSample{});
+    std::fill_n(ahead_.begin() + static_cast<std::ptrdiff_t>(first), count, Rgb(0.0F));
   }
   bool on() const { return !samples_.empty(); }
   const LayerSample& operator[](std::size_t sample) const {
@@ -34,13 +37,21 @@ class LayerRecorder {
   /// @param scatterings so far
   /// @param radiance that it has collected so far
   void scattering(uint32_t sample, uint32_t scatterings, const Rgb& radiance) {
-    if (scatterings == 0) add(samples_[sample].unscattered, radiance);
-    if (scatterings == 1) add(samples_[sample].at_most_once, radiance);
+    const Rgb so_far = radiance - ahead_[sample];
+    if (scatterings == 0) add(samples_[sample].unscattered, so_far);
+    if (scatterings == 1) add(samples_[sample].at_most_once, so_far);
+    ahead_[sample] = Rgb(0.0F);
   }
+  /// A path has collected radiance that is scattered once more than the path has been by now.
+  void ahead(uint32_t sample, const Rgb& radiance) { add(ahead_[sample], radiance); }
   /// A path has ended.
   void end(uint32_t sample, uint32_t scatterings, const Rgb& radiance) {
-    if (scatterings == 0) add(samples_[sample].unscattered, radiance);
-    if (scatterings <= 1) add(samples_[sample].at_most_once, radiance);
+    const Rgb so_far = radiance - ahead_[sample];
+    if (scatterings == 0) {
+      add(samples_[sample].unscattered, so_far);
+      add(samples_[sample].at_most_once, radiance);
+    }
+    if (scatterings == 1) add(samples_[sample].at_most_once, so_far);
   }
   /// A path has seen light from outside without a scattering.
   void background(uint32_t sample, const Rgb& radiance) {
@@ -63,6 +74,7 @@ class LayerRecorder {
   }
 
   std::vector<LayerSample> samples_;
+  std::vector<Rgb> ahead_;  // see ahead()
   LayerSample none_;
 };
 

@@ -23,15 +23,16 @@ void PathWavefront::find_surface(ScenePath& path) {
 void PathWavefront::send(std::size_t slot) {
   ScenePath& path = paths_[slot];
   path.is_sent = true;
-  set_side(path);
+  set_side(path, path.origin, path.direction);
   if (needs_surfaces_first(path)) find_surface(path);
   if (path.medium == kVacuum) {
     sent_in_vacuum_.push_back(static_cast<uint32_t>(slot));
     return;
   }
   const Walker& walker = path.colors->walker(path.medium, path.channel);
-  write_ray(slot, walker, path.origin, path.direction,
-            path.ends_at_surface ? hit_of(path).t : path.side);
+  const float end = path.ends_at_surface ? hit_of(path).t : path.side;
+  write_ray(slot, walker, path.origin, path.direction, end);
+  if (near_lines_) send_near_line(slot, end);
 }
 
 void PathWavefront::write_ray(std::size_t slot, const Walker& walker, const Vec3f& origin,
@@ -74,12 +75,10 @@ void PathWavefront::fly() {
   }
 }
 
-void PathWavefront::set_side(ScenePath& path) const {
-  if (scene_.domain) {
-    path.side = scene_.domain->way_to_side(path.origin, path.direction);
-  } else if (meter_ != nullptr) {
-    path.side = meter_->way_to_plane(path.origin, path.direction, path.level);
-  }
+void PathWavefront::set_side(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
+  if (!has_sides_) return;
+  path.side = scene_.domain ? scene_.domain->way_to_side(origin, direction)
+                            : meter_->way_to_plane(origin, direction, path.level);
 }
 
 void PathWavefront::pass_side(ScenePath& path) {
@@ -127,6 +126,8 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
       path.throughput[c] = flights_.weight[c][i];
       path.density[c] = flights_.density[c][i];
     }
+  } else if (meter_ != nullptr) {
+    path.throughput[0] *= flights_.weight[0][i];
   } else {
     // A walker of one channel serves all, or the only one that there is.
     if (const float emitted = flights_.emitted[0][i]; emitted != 0) {
@@ -134,7 +135,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
     }
     path.throughput *= flights_.weight[0][i];
   }
-  if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
+  if (!(magnitude(path) < kLargestThroughput)) {
     path.radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
     path.is_dead = true;
     return;

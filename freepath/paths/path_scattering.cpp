@@ -29,6 +29,7 @@ void PathWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& dir
   path.ends_at_surface = false;
   path.surfaces_known = false;
   path.is_in_rays = false;
+  path.line_is_drawn = false;
   path.emission_share = 1;
   ++path.flights;
 }
@@ -125,9 +126,7 @@ PathWavefront::Departure PathWavefront::depart(const ScenePath& path, const Surf
   return departure;
 }
 
-LightSample PathWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
-                                      const std::array<float, 3>& u) const {
-  LightSample light = scene_.lights->sample(position, spectra, u[0], u[1], u[2]);
+LightSample PathWavefront::with_alpha(LightSample light, const Vec3f& position) const {
   if (!has_alpha_ || !light.area || light.area->light >= shapes_of_lights_.size()) return light;
   // Paths meet the light with this chance, so that its mean is the same.
   if (const std::optional<uint32_t> shape = shapes_of_lights_[light.area->light]) {
@@ -142,6 +141,11 @@ LightSample PathWavefront::draw_light(const Vec3f& position, const SpectrumValue
                                        .primitive = area.primitive});
   }
   return light;
+}
+
+LightSample PathWavefront::draw_light(const Vec3f& position, const SpectrumValues& spectra,
+                                      const std::array<float, 3>& u) const {
+  return with_alpha(scene_.lights->sample(position, spectra, u[0], u[1], u[2]), position);
 }
 
 void PathWavefront::pass_hole(ScenePath& path) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -94,6 +95,15 @@ struct PathScene {
     const auto number = static_cast<std::size_t>(medium);
     return number < media.size() && is_clear[number] &&
            media[number].bounds().intersects(Vec3d(position) + origin);
+  }
+
+  /// How far a ray in a medium goes before it meets a surface; infinite where the medium is clear,
+  /// which ends before surfaces do.
+  float way_to_surface(MediumId medium, const Vec3f& position, const Vec3f& direction) const {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    if (!surfaces || is_clear_at(medium, position)) return kFar;
+    const auto hit = surfaces->intersect(position, direction, 0, kFar);
+    return hit ? hit->t : kFar;
   }
 };
 

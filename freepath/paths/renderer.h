@@ -46,6 +46,12 @@ struct RenderSettings {
   bool chooses_transmittance = false;
   /// Casts shadow rays that bring little by Russian roulette (ShadowGuide); else all are cast.
   bool shadow_roulette = true;
+  /// Gives pixels the shares of the samples that a pilot asks for (sample_plan.h): `samples` is
+  /// their mean over all pixels then.
+  bool adaptive = false;
+  /// Finds the light of lights in or near media along lines, whose variance has an end
+  /// (NearLights); else at scatterings alone.
+  bool near_light_lines = true;
   /// Leaves out light from outside that is seen without a scattering: pictures of what is in the
   /// scene alone, premultiplied by alpha.
   bool transparent = false;

@@ -21,14 +21,18 @@ class ShadowTracer {
   static constexpr uint32_t kNoCell = UINT32_MAX;
 
   /// @param scene,media_sets must outlive this
-  ShadowTracer(const PathScene& scene, MediaSetTable& media_sets, uint64_t seed, std::size_t slots);
+  /// @param is_second of two that trace rays of the same paths and flights, whose random numbers
+  ///   are to be others
+  ShadowTracer(const PathScene& scene, MediaSetTable& media_sets, uint64_t seed, std::size_t slots,
+               bool is_second = false);
 
   /// Adds a ray.
   /// @param owner number of the path, whose radiance it is to add to
   /// @param media at its origin
   /// @param radiance what it adds if nothing is in between
   /// @param is_rgb to ScenePath::rgb and not to ScenePath::radiance
-  /// @param cell of a FluxMeter that it is to add to, and not to the path; kNoCell: none
+  /// @param cell that it is to add to, and not to the path: Deposit says what that does; kNoCell:
+  ///   none
   void add(uint32_t owner, const ScenePath& path, const Vec3f& origin, const Vec3f& direction,
            const ShadowEnd& end, MediaSetId media, const SampledSpectrum& radiance, bool is_rgb,
            uint32_t cell = kNoCell) {
@@ -44,7 +48,7 @@ class ShadowTracer {
   }
 
   /// Takes what a ray adds to a cell.
-  using Deposit = std::function<void(const ScenePath&, uint32_t cell, const SampledSpectrum&)>;
+  using Deposit = std::function<void(ScenePath&, uint32_t cell, const SampledSpectrum&)>;
   /// Traces all rays, adds to their paths or cells, and forgets them.
   void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics, const Deposit& deposit);
 
@@ -71,6 +75,8 @@ class ShadowTracer {
     uint32_t lookups = 0;
   };
 
+  /// Stream of a ray's part through one medium.
+  uint32_t stream_of(uint32_t flight, uint32_t segment) const;
   /// Sends a ray to the walker of the one medium on its way.
   void add_open(const ScenePath& path, MediumId medium, const Vec3f& origin, const Vec3f& direction,
                 float end);
@@ -91,6 +97,7 @@ class ShadowTracer {
   const PathScene& scene_;
   MediaSetTable& media_sets_;
   uint64_t seed_;
+  bool is_second_;
   bool has_holes_ = false;  // whether a material or an alpha of the scene has
   bool is_open_ = false;    // whether each ray has at most one medium on its way
   std::vector<Arrival> arrivals_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "freepath/media/brick_map.h"
+#include "freepath/media/density_function.h"
 
 namespace freepath {
 namespace {
@@ -151,7 +152,23 @@ std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& fr
           yz * dx * dy + xz * dx * dz + xy * dy * dz, a[1][1][1] * dx * dy * dz};
 }
 
+RayMedium::Densities RayMedium::computed(const Vec3d& place) const {
+  Vec3f position;
+  for (int axis = 0; axis < 3; ++axis) {
+    position[axis] = view_.cell_origin[axis] +
+                     static_cast<float>(place[axis] / view_.cell_size) * view_.cell_edge[axis];
+  }
+  Densities result{};
+  for (int k = 0; k < component_count(); ++k) {
+    float density = 0;
+    component(k).function->evaluate({&position, 1}, {&density, 1});
+    result[k] = density;
+  }
+  return result;
+}
+
 RayMedium::Densities RayMedium::densities(const Path& path, double t, RandomStream& random) const {
+  if (view_.components[0].function != nullptr) return computed(path.origin + path.direction * t);
   Vec3d uniform(0.0);
   if (view_.interpolation == Interpolation::kStochastic) {
     for (int axis = 0; axis < 3; ++axis) uniform[axis] = random.uniform();

@@ -97,12 +97,14 @@ class RayMedium {
   }
 
   /// Densities at a distance from where the path begins; stochastic interpolation draws one tap for
-  /// all components.
+  /// all components. Those that are computed in place of voxels are as exact as their function.
   Densities densities(const Path& path, double t, RandomStream& random) const;
 
  private:
   /// A path as it passes through the voxels of a component.
   Path path_in(int k, const Path& path) const;
+  /// Densities that functions compute.
+  Densities computed(const Vec3d& place) const;
   /// Value of a voxel, counted from the first of the index.
   double voxel(int k, const Vec3i& coord) const;
   /// The nearest voxel that has a next one along every axis within the index of a component.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "freepath/base/error.h"
+#include "freepath/transport/end_scattering.h"
 
 namespace freepath {
 namespace {
@@ -144,6 +145,14 @@ void Walker::free_paths(const RayStream& rays, FlightStream& flights,
 void Walker::transmittance(const RayStream& rays, FlightStream& flights,
                            WalkStatistics& statistics) const {
   walk(transmittance_, WalkModes{}, rays, flights, statistics);
+}
+
+void Walker::scattering_at_ends(const RayStream& rays, FlightStream& flights,
+                                WalkStatistics& statistics) const {
+  Bound bound;
+  bound.function = &scattering_at_ends_of;
+  bound.channels = channels_;
+  walk(bound, WalkModes{}, rays, flights, statistics);
 }
 
 }  // namespace freepath

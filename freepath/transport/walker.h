@@ -63,6 +63,13 @@ class Walker {
   void transmittance(const RayStream& rays, FlightStream& flights,
                      WalkStatistics& statistics) const;
 
+  /// Draws a component that scatters at each ray's t_max, in proportion to its scattering
+  /// coefficients there: the flight is a scattering by that component, whose weights are its
+  /// coefficients over the probability of the draw [1/m]. Nothing scatters, and the flight is an
+  /// escape, where the ray ends outside of the medium or in a void of it.
+  void scattering_at_ends(const RayStream& rays, FlightStream& flights,
+                          WalkStatistics& statistics) const;
+
   /// Channels in the weights of a flight: 1, where one stands for all, or those of the medium.
   int channels() const { return channels_; }
   /// Channels in the weights of a transmittance: 1 where one extinction serves all.

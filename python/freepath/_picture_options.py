@@ -36,6 +36,8 @@ def picture_options(
     max_scatterings: int | None = None,
     wavelengths: int = 4,
     shadow_roulette: bool = True,
+    near_light_lines: bool = True,
+    adaptive: bool = True,
     threads: int = 0,
     simd: str = "best",
 ) -> _freepath.RenderOptions:
@@ -46,9 +48,10 @@ def picture_options(
     """
     options = common_options(
         scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
-        max_scatterings, wavelengths, shadow_roulette, threads, simd,
+        max_scatterings, wavelengths, shadow_roulette, near_light_lines, threads, simd,
     )  # fmt: skip
     options.time_limit = _seconds(time)
+    options.adaptive = bool(adaptive)
     if noise is not None:
         if not 1e-6 <= noise <= 1:
             raise Error(f"noise: {noise!r} is not between 1e-6 and 1")
@@ -85,13 +88,15 @@ def facts_of(scene: Scene, options: _freepath.RenderOptions) -> Facts:
         ("emission", options.walk.emission),
         ("wavelengths", str(options.wavelengths)),
         ("shadow_roulette", str(options.shadow_roulette)),
+        ("near_light_lines", str(options.near_light_lines)),
+        ("adaptive", str(options.adaptive)),
     ]
 
 
 def common_options(
     scene: Scene, spp: Any, seed: Any, color: Any, tracker: Any, estimator: Any, interpolation: Any,
     absorption: Any, emission: Any, max_scatterings: Any, wavelengths: Any, shadow_roulette: Any,
-    threads: Any, simd: Any,
+    near_light_lines: Any, threads: Any, simd: Any,
 ) -> _freepath.RenderOptions:  # fmt: skip
     """Options that pictures and rays have in common."""
     if not isinstance(scene, Scene):
@@ -107,6 +112,7 @@ def common_options(
     options.wavelengths = as_count(wavelengths, "wavelengths", 1, _freepath.max_channels)
     options.threads = threads_of(threads)
     options.shadow_roulette = bool(shadow_roulette)
+    options.near_light_lines = bool(near_light_lines)
     return options
 
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,34 @@ FilmMean sky_furnace(uint32_t samples, uint64_t seed) {
   return mean_of(render_text(text, {.samples = samples, .seed = seed}).image);
 }
 
+/// Fog around a point light that scatters it once into parallel rays, over what quadrature says:
+/// ∫ σ_s e^(-σ_t (1 + z + r)) I / (4π r²) dz, where z = h tan θ and dz / r² = dθ / h.
+FilmMean near_light(uint32_t samples, uint64_t seed) {
+  constexpr double kHeight = 0.1;
+  constexpr double kSigma = 0.8;  // of scattering alone
+  constexpr int kSteps = 2000;
+  const double widest = std::atan(1 / kHeight);
+  double expected = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = widest * (2 * (i + 0.5) / kSteps - 1);
+    const double way = 1 + kHeight * std::tan(angle) + kHeight / std::cos(angle);
+    expected +=
+        kSigma * std::exp(-kSigma * way) / (4 * std::numbers::pi * kHeight) * 2 * widest / kSteps;
+  }
+  const std::string text =
+      "Integrator \"volpath\" \"integer maxdepth\" 1\n" + film(8) +
+      "LookAt 0 0 -9  0 0 0  0 1 0\n"
+      "Camera \"orthographic\" \"float screenwindow\" [ -1e-4 1e-4 -1e-4 1e-4 ]\nWorldBegin\n"
+      R"(LightSource "point" "rgb I" [ 1 1 1 ] "point3 from" [ 0.1 0 0 ])"
+      "\n"
+      R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 0.8 0.8 0.8 ] )"
+      R"("rgb sigma_a" [ 0 0 0 ])"
+      "\n" +
+      medium_box("fog", Vec3d(-1), Vec3d(1));
+  const FilmMean found = mean_of(render_text(text, {.samples = samples, .seed = seed}).image);
+  return {found.mean / expected, found.error / expected};
+}
+
 struct Case {
   const char* name;
   Furnace furnace;
@@ -148,6 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"ShadowRoulette", sky_furnace, &Planted::shadow_roulette},
                       Case{"SceneLightShare", core_furnace, &Planted::light_share},
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
+                      Case{"NearLightLines", near_light, &Planted::near_line},
                       Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),
     [](const auto& test) { return std::string(test.param.name); });
 

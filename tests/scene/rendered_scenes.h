@@ -34,6 +34,7 @@ struct PictureOptions {
   uint64_t seed = 5;
   int threads = 0;
   std::size_t batch = 2048;
+  bool near_light_lines = true;
   double time_limit = 0;               ///< [s] by the clock; 0: none.
   std::function<double()> clock = {};  ///< RenderSettings::clock
 };
@@ -56,6 +57,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.threads = options.threads;
   settings.buckets = built.picture.buckets;
   settings.batch = options.batch;
+  settings.near_light_lines = options.near_light_lines;
   settings.time_limit = options.time_limit;
   settings.clock = options.clock;
   settings.max_scatterings = built.picture.max_scatterings;
