@@ -176,7 +176,7 @@ std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
   for (AtomicFile& file : pictures_) {
     const bool is_film = is_film_file(file.path());
     const bool is_written = attempts.attempt([&] {
-      if (is_partial(result)) file.retarget(partial_name(file.path()));
+      if (is_partial(result, is_film_file(file.path()))) file.retarget(partial_name(file.path()));
       if (is_film) {
         write_film(file, header_of(*plan.header, result), result.film);
       } else {
@@ -189,7 +189,7 @@ std::vector<std::string> PictureFilesAside::write(const OutputPlan& plan,
   const bool is_lost = !is_kept && attempts.failed();
   if (statistics_) {
     attempts.attempt([&] {
-      if (is_partial(result)) statistics_->retarget(partial_name(statistics_->path()));
+      if (is_partial(result, true)) statistics_->retarget(partial_name(statistics_->path()));
       statistics_->write(json_text(statistics_json(result, report), 2) + '\n');
       statistics_->replace_target();
     });
@@ -208,8 +208,9 @@ std::string partial_name(const std::string& file) {
   return (path.parent_path() / name).string();
 }
 
-bool is_partial(const RenderResult& result) {
-  return result.interrupted || result.pixels_without_samples > 0;
+bool is_partial(const RenderResult& result, bool is_film) {
+  return result.interrupted || result.pixels_without_samples > 0 ||
+         (!is_film && result.pixels_between > 0);
 }
 
 std::vector<std::pair<std::string, MetadataValue>> fixed_metadata(const RenderReport& report) {
@@ -269,6 +270,15 @@ void print_warnings(const RenderResult& result, const RenderReport& report) {
          static_cast<std::size_t>(result.film.width()) * result.film.height(),
          result.pixels_without_samples == 1 ? "has" : "have");
   }
+}
+
+void warn_of_pixels_between(const RenderResult& result) {
+  if (result.pixels_between == 0) return;
+  warn(
+      "{} of {} pixels {} no sample in these rounds: black with alpha 0; write a .film of them and "
+      "merge it with the others, or take as many samples of each pixel by --no-adaptive",
+      result.pixels_between, result.film.pixel_count(),
+      result.pixels_between == 1 ? "has" : "have");
 }
 
 void require_no_overflows(const RenderResult& result) {

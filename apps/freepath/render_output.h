@@ -59,7 +59,8 @@ struct OutputPlan {
 std::string partial_name(const std::string& file);
 
 /// Whether less was rendered than was asked for.
-bool is_partial(const RenderResult& result);
+/// @param is_film whether it is about a film, which part of the rounds may leave without samples
+bool is_partial(const RenderResult& result, bool is_film);
 
 /// What is known of a picture before it is rendered, for the headers of its files.
 std::vector<std::pair<std::string, MetadataValue>> fixed_metadata(const RenderReport& report);
@@ -99,6 +100,9 @@ void check_statistics_file(const std::string& file, const std::vector<std::strin
 
 /// Tells on standard error what makes a picture less than it should be.
 void print_warnings(const RenderResult& result, const RenderReport& report);
+
+/// Tells on standard error of pixels without a sample in pictures of part of the rounds.
+void warn_of_pixels_between(const RenderResult& result);
 
 /// Fails, once all is written, where paths were lost.
 /// @throws Error that says how many, and which pixels' variance is infinite

@@ -164,7 +164,7 @@ class Sequence {
     const RenderOutcome outcome =
         render_stage(plan_, frames_[i], medium, *stage_, tracker_, log, stop, report);
     print_frame(i, frames_.size(), *frames_[i].frame, outcome, report);
-    return !is_partial(outcome.result);
+    return !is_partial(outcome.result, true);
   }
 
   /// Says how far a sequence came that did not come to its end.

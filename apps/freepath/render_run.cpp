@@ -231,7 +231,9 @@ RenderOutcome render_and_write(const RenderJob& job, RenderReport& report,
   report.seconds_render = result.seconds;
   if (!job.checkpoint.empty()) checkpoints.write(result.film, result.counts, result.seconds);
   outcome.written = aside.write({job.look, job.film, display.get(), &header}, result, report);
-  if (is_partial(result)) note_partial_result();
+  const bool are_films = std::all_of(job.outputs.begin(), job.outputs.end(), is_film_file);
+  if (!are_films) warn_of_pixels_between(result);
+  if (is_partial(result, are_films)) note_partial_result();
   return outcome;
 }
 

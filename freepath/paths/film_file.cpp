@@ -92,6 +92,7 @@ Json header_json(const FilmHeader& header) {
                {"fewest_samples", header.samples.fewest},
                {"most_samples", header.samples.most},
                {"pixels_without_samples", header.samples.pixels_without},
+               {"pixels_between", header.samples.pixels_between},
                {"layers", to_string(header.layers)},
                {"buckets", {header.buckets.count, header.buckets.first, header.buckets.last}},
                {"counts", counts},
@@ -122,7 +123,7 @@ FilmHeader header_of(const Json& json) {
   header.wanted_samples = json.at("wanted_samples");
   header.first_sample = json.at("first_sample");
   header.samples = {json.at("fewest_samples"), json.at("most_samples"),
-                    json.at("pixels_without_samples")};
+                    json.at("pixels_without_samples"), json.at("pixels_between")};
   header.layers = parse_layers(json.at("layers").get<std::string>());
   const Json& buckets = json.at("buckets");
   header.buckets = {buckets.at(0), buckets.at(1), buckets.at(2)};

@@ -326,6 +326,7 @@ inline void finish_result(PassRenderer& passes, const RenderSettings& settings,
   result.samples = samples.fewest;
   result.most_samples = samples.most;
   result.pixels_without_samples = samples.pixels_without;
+  result.pixels_between = samples.pixels_between;
   result.interrupted = passes.stop_is_wished() && result.samples != settings.samples;
   result.seconds = passes.seconds();
   result.counts = passes.counts();

@@ -93,6 +93,9 @@ struct RenderResult {
   /// off.
   uint32_t samples = 0, most_samples = 0;
   std::size_t pixels_without_samples = 0;  ///< These are 0 in every channel of the picture.
+  /// These too, as their share of the rounds comes to no sample: a film of part of the rounds is
+  /// whole all the same.
+  std::size_t pixels_between = 0;
   double seconds = 0;
   bool interrupted = false;
 };

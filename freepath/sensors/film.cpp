@@ -160,11 +160,12 @@ void Film::merge_pixel(std::size_t pixel, const Film& other, std::size_t other_p
 }
 
 Film::SampleCounts Film::sample_counts() const {
-  SampleCounts counts{rounds(0), 0, 0};
+  SampleCounts counts{.fewest = rounds(0)};
   for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
     counts.fewest = std::min(counts.fewest, rounds(pixel));
     counts.most = std::max(counts.most, rounds(pixel));
-    if (pixels_[pixel].samples == 0) ++counts.pixels_without;
+    if (pixels_[pixel].samples > 0) continue;
+    ++(rounds(pixel) > 0 ? counts.pixels_between : counts.pixels_without);
   }
   return counts;
 }

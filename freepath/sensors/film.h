@@ -139,6 +139,8 @@ class Film {
     uint32_t fewest = 0;
     uint32_t most = 0;
     std::size_t pixels_without = 0;  ///< Pixels that have none.
+    /// Pixels whose share of their rounds comes to no sample.
+    std::size_t pixels_between = 0;
   };
   SampleCounts sample_counts() const;
   /// Samples that were not finite, and the first pixel that had one.

@@ -331,8 +331,8 @@ def checked(picture: Picture) -> Picture:
         )
     if stats["pixels_without_samples"]:
         warnings.warn(
-            f"{stats['pixels_without_samples']} pixels have no sample, for want of time: black "
-            "with alpha 0",
+            f"{stats['pixels_without_samples']} pixels have no sample, for want of time or "
+            "of rounds: black with alpha 0",
             stacklevel=3,
         )
     if stats["cut_share"] >= 0.005:

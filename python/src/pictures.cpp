@@ -30,7 +30,7 @@ nb::dict statistics_of(const PythonPicture& picture) {
   nb::dict stats;
   stats["samples"] = header.samples.fewest;
   stats["most_samples"] = header.samples.most;
-  stats["pixels_without_samples"] = header.samples.pixels_without;
+  stats["pixels_without_samples"] = header.samples.pixels_without + header.samples.pixels_between;
   stats["paths"] = counts.paths;
   stats["overflows"] = counts.overflows;
   stats["cut_paths"] = counts.cut_paths;
