@@ -22,7 +22,6 @@
 #include "freepath/study/comparison_charts.h"
 #include "freepath/study/comparison_figures.h"
 #include "freepath/study/comparison_report.h"
-#include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
 namespace {
@@ -51,9 +50,7 @@ Scenes are compared in rgb where --color says nothing else.)";
 struct CompareOptions {
   PictureOptions picture;
   std::string folder;
-  std::string trackers =
-      "delta,weighted-delta,decomposition,weighted-decomposition,"
-      "spectral-decomposition";
+  std::string trackers = kComparedTrackers;
   std::string transmittance = "ratio", interpolation = "stochastic";
   double time = ComparisonSettings{}.time;
   uint32_t samples = 0;
@@ -77,31 +74,20 @@ std::string date_text() {
 /// @param automatic what `auto` stands for
 std::vector<Configuration> read_configurations(const CompareOptions& options,
                                                const std::string& automatic) {
-  std::vector<Configuration> configurations;
   const auto list_of = [](std::string_view option, const std::string& text) {
     return read_option(option, [&] { return split_methods(text); });
   };
-  const auto transmittances = list_of("--transmittance", options.transmittance);
-  const auto interpolations = list_of("--interpolation", options.interpolation);
-  for (const std::string& tracker : list_of("--trackers", options.trackers)) {
-    for (const std::string& transmittance : transmittances) {
-      for (const std::string& interpolation : interpolations) {
-        Configuration configuration;
-        configuration.tracker = read_tracker(tracker, "--trackers");
-        if (is_automatic(configuration.tracker)) configuration.tracker = automatic;
-        configuration.transmittance =
-            read_method(transmittance, "--transmittance", transmittance_infos());
-        configuration.interpolation = read_interpolation(interpolation);
-        if (std::find(configurations.begin(), configurations.end(), configuration) !=
-            configurations.end()) {
-          fail("--trackers: {} is given twice{}", configuration.tracker,
-               is_automatic(tracker) ? " (auto stands for it here)" : "");
-        }
-        configurations.push_back(std::move(configuration));
-      }
-    }
+  std::vector<std::string> trackers = list_of("--trackers", options.trackers);
+  for (std::string& tracker : trackers) tracker = read_tracker(tracker, "--trackers");
+  std::vector<std::string> transmittances = list_of("--transmittance", options.transmittance);
+  for (std::string& transmittance : transmittances) {
+    transmittance = read_method(transmittance, "--transmittance", transmittance_infos());
   }
-  return configurations;
+  std::vector<Interpolation> interpolations;
+  for (const std::string& interpolation : list_of("--interpolation", options.interpolation)) {
+    interpolations.push_back(read_interpolation(interpolation));
+  }
+  return all_configurations(trackers, transmittances, interpolations, automatic);
 }
 
 /// A line of a name, a bar and the time left, on a terminal.

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/freepath/commands.h"
@@ -24,6 +25,7 @@
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 #include "freepath/scene/flux_scene.h"
+#include "freepath/scene/volume_medium.h"
 #include "freepath/transport/auto_tracker.h"
 
 namespace freepath::program {
@@ -36,7 +38,8 @@ stays in the medium, each as a fraction of what falls in and with its standard e
 domain, and of each column as a fraction of what falls on one. Over a --ground transmittance is all
 that arrives there, however often, and the ground keeps its part of it. Each --view has the radiance
 I that leaves in its direction, as π I / F, where F is the flux that falls in; a zenith beyond 90 is
-seen from below. Light that never scattered is in no view.
+seen from below. Light that never scattered is in no view. A medium whose coefficients differ
+between R, G and B has all of these in each of the three, by paths of its own.
 
 The domain is that of the active voxels, whatever is in them; of volumes with empty margins give
 --domain. Directions are as on a compass where z is up: azimuth 0 is north, +y, and 90 east, +x.
@@ -141,6 +144,50 @@ uint64_t paths_for(double error, const FluxScene& scene, FluxSettings settings,
   return paths_for_error(error, largest, "--error");
 }
 
+/// What came of one light.
+struct LightResult {
+  std::vector<FluxResult> channels;  ///< Results of the scenes that were begun.
+  bool is_partial = false;
+};
+
+/// Traces light through scenes, each a channel, to the end or until it is interrupted.
+/// @param error to reach in place of the settings' number of paths
+LightResult trace_light(const std::vector<FluxScene>& scenes, FluxSettings settings,
+                        const std::optional<double>& error, const StopOnInterrupt& stop) {
+  LightResult result;
+  for (const FluxScene& scene : scenes) {
+    PathProgress progress(stop);
+    const FluxProgress show = [&](uint64_t done, uint64_t total) {
+      return progress.show(done, total);
+    };
+    if (error) settings.paths = paths_for(*error, scene, settings, show);
+    if (stop.requested()) break;
+    result.channels.push_back(trace_flux(scene.scene, scene.meter, settings, show));
+    progress.finish();
+    const uint64_t paths = result.channels.back().paths;
+    if (paths < settings.paths) {
+      result.is_partial = true;
+      warn("interrupted after {} of {}", paths, counted(settings.paths, "path"));
+    }
+    if (stop.requested()) break;
+  }
+  if (!result.channels.empty() && result.channels.size() < scenes.size()) {
+    result.is_partial = true;
+    warn("interrupted: {} of {} channels are done", result.channels.size(), scenes.size());
+  }
+  return result;
+}
+
+/// The medium, or what it is in each of R, G and B where these differ.
+std::vector<VolumeMedium> channels_of(VolumeMedium medium, int super_voxel) {
+  if (medium.medium->is_grey()) return {std::move(medium)};
+  std::vector<VolumeMedium> channels;
+  for (int c = 0; c < kChannels; ++c) {
+    channels.push_back(medium_in_channel(medium, c, super_voxel));
+  }
+  return channels;
+}
+
 void run(const FluxOptions& options) {
   if (!options.paths.empty() && !options.error.empty()) {
     fail("--paths and --error both say when to end; give one or the other");
@@ -166,37 +213,35 @@ void run(const FluxOptions& options) {
   }
   const std::vector<VolumePlan> plans = plan_volumes(options.volumes);
   std::vector<VolumeReport> report;
-  const VolumeMedium medium = make_medium(load_volumes(plans, report), options.super_voxel, sides);
-  const TrackerChoice choice = settle_tracker(settings.walk.tracker, *medium.medium);
+  const std::vector<VolumeMedium> channels = channels_of(
+      make_medium(load_volumes(plans, report), options.super_voxel, sides), options.super_voxel);
+  const TrackerChoice choice = settle_tracker(settings.walk.tracker, *channels[0].medium);
   settings.walk.tracker = choice.tracker;
   if (!choice.reason.empty()) tell("auto: {}, since {}\n", choice.tracker, choice.reason);
   warn_if_biased(settings.walk.tracker);
-  FluxScene scene = make_flux_scene(medium, up, ground, settings.walk.interpolation);
-  if (columns) scene.meter.counts = *columns;
-  for (const FluxAngles& view : views) scene.meter.views.push_back(direction_of(view, up));
+  std::vector<FluxScene> scenes;
+  for (const VolumeMedium& medium : channels) {
+    scenes.push_back(make_flux_scene(medium, up, ground, settings.walk.interpolation));
+    FluxMeter& meter = scenes.back().meter;
+    if (columns) meter.counts = *columns;
+    for (const FluxAngles& view : views) meter.views.push_back(direction_of(view, up));
+  }
   const StopOnInterrupt stop;
-  FluxReport results{.counts = scene.meter.counts,
-                     .domain = scene.domain,
+  FluxReport results{.counts = scenes[0].meter.counts,
+                     .domain = scenes[0].domain,
                      .views = views,
                      .settings = settings,
+                     .is_grey = channels.size() == 1,
                      .results = {}};
   bool is_partial = false;
   for (const FluxLight& light : lights) {
-    scene.meter.beam.reset();
-    if (light.sun) scene.meter.beam = -direction_of(*light.sun, up);
-    PathProgress progress(stop);
-    const FluxProgress show = [&](uint64_t done, uint64_t total) {
-      return progress.show(done, total);
-    };
-    if (error) settings.paths = paths_for(*error, scene, settings, show);
-    if (stop.requested()) break;
-    const FluxResult result = trace_flux(scene.scene, scene.meter, settings, show);
-    progress.finish();
-    results.results.emplace_back(light, result);
-    if (result.paths < settings.paths) {
-      is_partial = true;
-      warn("interrupted after {} of {}", result.paths, counted(settings.paths, "path"));
+    for (FluxScene& scene : scenes) {
+      scene.meter.beam.reset();
+      if (light.sun) scene.meter.beam = -direction_of(*light.sun, up);
     }
+    LightResult result = trace_light(scenes, settings, error, stop);
+    is_partial = is_partial || result.is_partial;
+    if (!result.channels.empty()) results.results.emplace_back(light, std::move(result.channels));
     if (stop.requested()) break;
   }
   if (results.results.empty()) fail("interrupted before any path of the result: wait longer");

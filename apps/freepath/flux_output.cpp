@@ -42,14 +42,9 @@ void put_rows(Json& json, const std::string& name, const std::vector<Estimate>& 
   json[name + "_error"] = std::move(errors);
 }
 
-Json json_of(const FluxReport& report, const FluxLight& light, const FluxResult& result) {
-  Json json;
-  if (light.sun) {
-    json["sun_zenith"] = light.sun->zenith;
-    json["sun_azimuth"] = light.sun->azimuth;
-  } else {
-    json["diffuse"] = true;
-  }
+std::string channel_name(std::size_t channel) { return std::string(1, "RGB"[channel]); }
+
+void put_result(Json& json, const FluxReport& report, const FluxResult& result) {
   for (const auto& [name, map] : maps_of(result)) put_estimate(json, name, map->all);
   if (!result.reflectance.columns.empty()) {
     Json& columns = json["columns"] = Json::object();
@@ -68,7 +63,33 @@ Json json_of(const FluxReport& report, const FluxLight& light, const FluxResult&
              report.counts[0]);
   }
   json["paths"] = result.paths;
+}
+
+Json json_of(const FluxReport& report, const FluxLight& light,
+             const std::vector<FluxResult>& results) {
+  Json json;
+  if (light.sun) {
+    json["sun_zenith"] = light.sun->zenith;
+    json["sun_azimuth"] = light.sun->azimuth;
+  } else {
+    json["diffuse"] = true;
+  }
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    put_result(report.is_grey ? json : json["channels"][channel_name(i)], report, results[i]);
+  }
   return json;
+}
+
+void print_result(const FluxReport& report, const FluxResult& result) {
+  for (const auto& [name, map] : maps_of(result)) {
+    print_estimate(name == "unscattered" ? "  unscattered" : name, map->all, result.paths);
+  }
+  for (std::size_t i = 0; i < result.radiances.size(); ++i) {
+    const FluxAngles& view = report.views[i];
+    print_estimate(fmt::format("view {:g},{:g}", view.zenith, view.azimuth),
+                   result.radiances[i].all, result.paths);
+  }
+  print("{}, tracker {}\n", counted(result.paths, "path"), report.settings.walk.tracker);
 }
 
 }  // namespace
@@ -78,21 +99,16 @@ Vec3f direction_of(const FluxAngles& angles, UpAxis up) {
 }
 
 void print_table(const FluxReport& report) {
-  for (const auto& [light, result] : report.results) {
+  for (const auto& [light, results] : report.results) {
     if (light.sun) {
       print("sun at zenith {:g}, azimuth {:g}\n", light.sun->zenith, light.sun->azimuth);
     } else {
       print("diffuse light\n");
     }
-    for (const auto& [name, map] : maps_of(result)) {
-      print_estimate(name == "unscattered" ? "  unscattered" : name, map->all, result.paths);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (!report.is_grey) print("channel {}\n", channel_name(i));
+      print_result(report, results[i]);
     }
-    for (std::size_t i = 0; i < result.radiances.size(); ++i) {
-      const FluxAngles& view = report.views[i];
-      print_estimate(fmt::format("view {:g},{:g}", view.zenith, view.azimuth),
-                     result.radiances[i].all, result.paths);
-    }
-    print("{}, tracker {}\n", counted(result.paths, "path"), report.settings.walk.tracker);
   }
   std::string domain;
   for (int axis = 0; axis < 3; ++axis) {
@@ -107,8 +123,8 @@ void print_json(const FluxReport& report) {
   if (report.results.size() == 1) {
     json = json_of(report, report.results[0].first, report.results[0].second);
   } else {
-    for (const auto& [light, result] : report.results) {
-      json["results"].push_back(json_of(report, light, result));
+    for (const auto& [light, results] : report.results) {
+      json["results"].push_back(json_of(report, light, results));
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -120,21 +136,27 @@ void print_json(const FluxReport& report) {
 }
 
 void write_maps(const std::string& path, const FluxReport& report) {
-  const FluxResult& result = report.results.front().second;
-  std::vector<std::pair<std::string, const FluxMap*>> maps = maps_of(result);
-  for (std::size_t i = 0; i < result.radiances.size(); ++i) {
-    maps.emplace_back(fmt::format("radiance{}", i + 1), &result.radiances[i]);
-  }
+  const std::vector<FluxResult>& results = report.results.front().second;
   Image image;
   image.width = static_cast<int>(report.counts[0]);
   image.height = static_cast<int>(report.counts[1]);
-  for (const auto& [name, map] : maps) {
-    image.channels.push_back(name);
-    image.channels.push_back(name + ".error");
+  std::vector<const FluxMap*> maps;
+  for (std::size_t c = 0; c < results.size(); ++c) {
+    const std::string ending = report.is_grey ? "" : "." + channel_name(c);
+    const auto add = [&](const std::string& name, const FluxMap& map) {
+      image.channels.push_back(name + ending);
+      image.channels.push_back(name + ".error" + ending);
+      maps.push_back(&map);
+    };
+    for (const auto& [name, map] : maps_of(results[c])) add(name, *map);
+    for (std::size_t i = 0; i < results[c].radiances.size(); ++i) {
+      add(fmt::format("radiance{}", i + 1), results[c].radiances[i]);
+    }
+    image.metadata.emplace_back("freepath:paths" + ending, static_cast<int64_t>(results[c].paths));
   }
   for (int row = image.height - 1; row >= 0; --row) {
     for (int column = 0; column < image.width; ++column) {
-      for (const auto& [name, map] : maps) {
+      for (const FluxMap* const map : maps) {
         const std::size_t number = static_cast<std::size_t>(row) * image.width + column;
         const Estimate& estimate = map->columns.empty() ? map->all : map->columns[number];
         image.values.push_back(static_cast<float>(estimate.mean));
@@ -142,7 +164,6 @@ void write_maps(const std::string& path, const FluxReport& report) {
       }
     }
   }
-  image.metadata.emplace_back("freepath:paths", static_cast<int64_t>(result.paths));
   image.metadata.emplace_back("freepath:seed", static_cast<int64_t>(report.settings.walk.seed));
   write_exr(path, image);
 }

@@ -32,14 +32,16 @@ struct FluxReport {
   Box3d domain;                      ///< [world]
   std::vector<FluxAngles> views;
   FluxSettings settings;
-  std::vector<std::pair<FluxLight, FluxResult>> results;
+  bool is_grey = true;  ///< Else each light has a result for each of R, G and B.
+  std::vector<std::pair<FluxLight, std::vector<FluxResult>>> results;
 };
 
 void print_table(const FluxReport& report);
-/// One object for one light, else a list of them under "results".
+/// One object for one light, else a list of them under "results". Of a medium that is not grey
+/// the object of a light has one for each channel under "channels".
 void print_json(const FluxReport& report);
 /// Writes the columns of the only light as channels, north (or what the second level axis counts
-/// up to) at the top.
+/// up to) at the top. Of a medium that is not grey, names end with that of a channel: ".R".
 /// @throws Error as write_exr
 void write_maps(const std::string& path, const FluxReport& report);
 

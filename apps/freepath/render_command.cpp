@@ -18,6 +18,7 @@
 #include "apps/freepath/render_pictures.h"
 #include "apps/freepath/render_scene.h"
 #include "freepath/base/error.h"
+#include "freepath/paths/time_target.h"
 #include "freepath/scene/volume_scene.h"
 
 namespace freepath::program {
@@ -77,6 +78,7 @@ struct RenderOptions {
   std::vector<std::string> outputs;
   uint32_t samples = 0;
   double time_limit = 0;
+  bool adaptive = true;
   std::string tracker = "delta", transmittance = "ratio", interpolation = "stochastic";
   double exposure = 0;
   std::string view;
@@ -93,6 +95,8 @@ RenderSettings read_settings(const RenderOptions& options) {
   walk.tracker = read_tracker(options.tracker, "--tracker");
   walk.transmittance = read_method(options.transmittance, "--transmittance", transmittance_infos());
   walk.interpolation = read_interpolation(options.interpolation);
+  settings.adaptive =
+      options.adaptive && (options.time_limit == 0 || options.time_limit >= kShortestPlannedTime);
   return settings;
 }
 
@@ -235,6 +239,11 @@ void add_render_command(CLI::App& program, const std::function<double()>& clock)
   add_run_plan_options(*command, options->run);
   add_method_options(*command, *options);
   add_picture_options(*command, options->picture);
+  command
+      ->add_flag("--adaptive,!--no-adaptive", options->adaptive,
+                 "More samples for pixels that are noisier, by a pilot: --spp is their mean; "
+                 "not with a --time below 20 s [on]")
+      ->group("Picture");
   command->callback([command, options] { run(*command, *options); });
 }
 

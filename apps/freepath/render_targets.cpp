@@ -58,21 +58,6 @@ std::vector<std::filesystem::path> files_of_options(const PictureOptions& option
   return files;
 }
 
-/// Renders the target by a scene.
-void set_renderers(RenderTarget& target, const std::shared_ptr<PathScene>& scene, ColorMode color) {
-  target.render = [scene, color](const RenderSettings& settings, const ProgressFunction& progress) {
-    return render_scene(*scene, color, settings, progress);
-  };
-  target.render_reference = [scene, color](const RenderSettings& settings,
-                                           const ProgressFunction& progress) {
-    // Put back whatever happens.
-    const auto put_back = [&](const SampleKind* kind) { scene->samples = *kind; };
-    const SampleKind own = std::exchange(scene->samples, SampleKind::kIndependent);
-    const std::unique_ptr<const SampleKind, decltype(put_back)> guard(&own, put_back);
-    return render_scene(*scene, color, settings, progress);
-  };
-}
-
 LoadedTarget load_volume_target(const CLI::App& command, const PictureOptions& options,
                                 const PictureSize& size) {
   check_wavelengths(command, read_color(options, ColorMode::kRgb));
@@ -130,6 +115,7 @@ LoadedTarget load_scene_target(const CLI::App& command, const PictureOptions& op
                       ? "media have colour, and surfaces take most of the time"
                       : "media are grey, or there are no surfaces, whose time one path for all "
                         "channels would save";
+  loaded.target = target_of(std::shared_ptr<PathScene>(built, &built->scene), plan.color);
   RenderTarget& target = loaded.target;
   target.name = names_of(options.volumes.files);
   std::vector<std::filesystem::path> files = files_of_options(options);
@@ -139,7 +125,6 @@ LoadedTarget load_scene_target(const CLI::App& command, const PictureOptions& op
   target.chromaticities = RgbChromaticities{space.primaries(), space.white()};
   target.width = window.width;
   target.height = window.height;
-  set_renderers(target, std::shared_ptr<PathScene>(built, &built->scene), plan.color);
   return loaded;
 }
 
@@ -161,15 +146,11 @@ LoadedTarget target_of_medium(const PictureOptions& options, VolumeMedium volume
   const TrackerChoice choice = settle_tracker("auto", medium);
   loaded.automatic_tracker = choice.tracker;
   loaded.reason = choice.reason;
-  RenderTarget& target = loaded.target;
-  target.name = names_of(options.volumes.files);
-  target.width = size.width;
-  target.height = size.height;
-  set_renderers(
-      target,
+  loaded.target = target_of(
       std::make_shared<PathScene>(make_volume_scene(
           volumes, make_camera(medium, camera_options, up), surroundings, read_ground(options))),
       read_color(options, ColorMode::kRgb));
+  loaded.target.name = names_of(options.volumes.files);
   loaded.volumes = std::move(volumes);
   return loaded;
 }

@@ -30,7 +30,7 @@ using Json = nlohmann::json;
 static_assert(std::endian::native == std::endian::little,
               "films are written as they lie in memory");
 
-constexpr std::string_view kMagic = "freepath film 1\n";
+constexpr std::string_view kMagic = "freepath film 2\n";
 /// Bytes that are packed at a time.
 constexpr std::size_t kPiece = std::size_t{1} << 20;
 constexpr uint64_t kLargestHeader = std::size_t{1} << 26;
@@ -244,7 +244,7 @@ class Input {
     take(std::as_writable_bytes(std::span(magic)));
     const std::string_view begin(magic.data(), magic.size());
     if (begin != kMagic) {
-      constexpr std::string_view kAnyVersion = kMagic.substr(0, kMagic.find('1'));
+      constexpr std::string_view kAnyVersion = kMagic.substr(0, kMagic.find('2'));
       if (begin.starts_with(kAnyVersion)) {
         fail("{}: is of another version of films' files; write it again by this freepath",
              source_.name);

@@ -77,7 +77,11 @@ class SeedMerger {
  public:
   /// @param parts in the order of their first samples
   SeedMerger(Film& film, const std::vector<Part>& parts, bool partial)
-      : film_(film), parts_(parts), partial_(partial), ends_(film.pixel_count()) {}
+      : film_(film),
+        parts_(parts),
+        partial_(partial),
+        ends_(film.pixel_count()),
+        shares_(film.pixel_count()) {}
 
   void run() {
     for (const Part& part : parts_) add(part);
@@ -91,7 +95,7 @@ class SeedMerger {
     const Film& other = loaded ? loaded->film : *part.film;
     const PixelWindow& window = other.window();
     for (std::size_t i = 0; i < other.pixel_count(); ++i) {
-      if (other.samples(i) == 0) continue;
+      if (other.rounds(i) == 0) continue;
       const int x = window.x + static_cast<int>(i % window.width);
       const int y = window.y + static_cast<int>(i / window.width);
       const std::size_t pixel =
@@ -100,7 +104,13 @@ class SeedMerger {
         missing(ends_[pixel], other.first_sample(), x, y);
       }
       film_.merge_pixel(pixel, other, i);
-      ends_[pixel] = other.first_sample() + other.samples(i);
+      if (ends_[pixel] == 0) shares_[pixel] = other.share(i);
+      if (other.share(i) != shares_[pixel]) {
+        fail(
+            "{}: is no part of the same picture: pixel ({}, {}) takes another share of the samples",
+            part.file, x, y);
+      }
+      ends_[pixel] = other.first_sample() + other.rounds(i);
     }
   }
 
@@ -124,7 +134,8 @@ class SeedMerger {
   Film& film_;
   const std::vector<Part>& parts_;
   bool partial_;
-  std::vector<uint32_t> ends_;  // of the samples that a pixel has
+  std::vector<uint32_t> ends_;  // of the rounds of samples that a pixel has
+  std::vector<SampleShare> shares_;
 };
 
 /// What is told of a merged film: that of its parts, summed.

@@ -111,6 +111,9 @@ FluxResult trace_flux(const PathScene& scene, FluxMeter meter, const FluxSetting
     fail("the coefficients differ between R, G and B; fluxes are those of one number each");
   }
   const MediumChannels channels = medium.bind(scene.spectra->in_rgb()).channels;
+  if (channels.emits() || channels.has_radiance_fields()) {
+    fail("the medium emits light, which is no part of its fluxes; leave its emission out");
+  }
   WalkSettings walk = settings.walk;
   walk.absorption = settle_absorption(channels, settings, meter);
   const WavelengthSampler factory(scene, ColorMode::kRgb, 1, walk);

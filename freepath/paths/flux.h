@@ -67,9 +67,8 @@ using FluxProgress = std::function<bool(uint64_t done, uint64_t total)>;
 ///   in it
 /// @param meter in place of whose absorbed_of_scattered those of the medium are taken
 /// @throws Error for settings out of range, methods that do not exist or whose weights would grow
-/// at
-///   every scattering (weight_growth.h), coefficients that differ between channels, more than
-///   kMostColumns, and if weights leave the range of float
+///   at every scattering (weight_growth.h), coefficients that differ between channels, a medium
+///   that emits, more than kMostColumns, and if weights leave the range of float
 FluxResult trace_flux(const PathScene& scene, FluxMeter meter, const FluxSettings& settings,
                       const FluxProgress& progress = {});
 

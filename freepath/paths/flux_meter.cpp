@@ -17,12 +17,6 @@ FluxMeter::FluxMeter(const Box3d& box, int axis, bool rises)
       bottom_(static_cast<float>(rises ? box.min[axis] : box.max[axis])),
       sides_{axis == 0 ? 1 : 0, axis == 2 ? 1 : 2} {}
 
-void FluxMeter::tilt(Vec3f& direction) const {
-  constexpr float kLeastSlope = 1e-12F;
-  float& along = direction[axis_];
-  if (std::abs(along) < kLeastSlope) along = std::copysign(kLeastSlope, along);
-}
-
 float FluxMeter::way_to_plane(const Vec3f& origin, const Vec3f& direction, uint32_t level) const {
   const float slope = down(direction);
   if (slope > 0 && level < splits.size()) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -48,6 +49,8 @@ class FluxMeter {
   /// way up one ends; of a medium that is the same everywhere in a depth.
   std::vector<float> splits;
 
+  /// The axis along which columns stand.
+  int axis() const { return axis_; }
   uint32_t columns() const { return counts[0] * counts[1]; }
   /// Numbers of what is counted: of fluxes and views, in each column.
   uint32_t cells() const { return columns() * kinds(); }
@@ -77,7 +80,11 @@ class FluxMeter {
   /// @param level how many lie above
   float way_to_plane(const Vec3f& origin, const Vec3f& direction, uint32_t level) const;
   /// Keeps a direction from being level to the last bit: a ray would leave sideways.
-  void tilt(Vec3f& direction) const;
+  /// @param slope its component along axis()
+  static void tilt(float& slope) {
+    constexpr float kLeastSlope = 1e-12F;
+    if (std::abs(slope) < kLeastSlope) slope = std::copysign(kLeastSlope, slope);
+  }
 
   struct Start {
     Vec3f origin, direction;

@@ -17,28 +17,44 @@ constexpr double kShareOfPilot = 1.0 / 16;
 constexpr double kMargin = 1.05;
 constexpr double kMostSamples = 1U << 30;
 
+/// @param variance of the mean of a pixel's channel
+template <class Variance>
+double noise_by(const Film& film, const Variance& variance) {
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < kChannels; ++channel) {
+      sum += film.mean(pixel, channel);
+      squares += variance(pixel, channel);
+    }
+  }
+  if (squares == 0) return 0;
+  const double values = static_cast<double>(film.pixel_count()) * kChannels;
+  return std::sqrt(squares / values) / std::abs(sum / values);
+}
+
+/// The noise of a picture of as many rounds whose pixels had exactly their shares of the samples:
+/// of a few rounds they have more.
+double noise_of_shares(const Film& film) {
+  return noise_by(film, [&](std::size_t pixel, int channel) {
+    const double share = film.share(pixel).value() * film.rounds(pixel);
+    return film.variance(pixel, channel) * film.samples(pixel) / share;
+  });
+}
+
 }  // namespace
 
 uint64_t pilot_seed(uint64_t seed) { return seed ^ kPilotSeed; }
 
 double relative_noise(const Film& film) {
-  double sum = 0;
-  double variance = 0;
-  for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
-    for (int channel = 0; channel < kChannels; ++channel) {
-      sum += film.mean(pixel, channel);
-      variance += film.variance(pixel, channel);
-    }
-  }
-  if (variance == 0) return 0;
-  const double values = static_cast<double>(film.pixel_count()) * kChannels;
-  return std::sqrt(variance / values) / std::abs(sum / values);
+  return noise_by(film,
+                  [&](std::size_t pixel, int channel) { return film.variance(pixel, channel); });
 }
 
 NoisePlan plan_of_pilot(const Film& pilot, double noise, uint32_t most) {
   NoisePlan plan;
   plan.pilot_samples = pilot.sample_counts().fewest;
-  plan.pilot_noise = relative_noise(pilot);
+  plan.pilot_noise = noise_of_shares(pilot);
   if (!std::isfinite(plan.pilot_noise)) {
     fail("the noise of this picture is not known, as the variance of a pixel is infinite");
   }

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <shared_mutex>
 #include <utility>
@@ -41,7 +42,7 @@ inline constexpr double kSecondsBetweenReports = 0.1;
 /// Renders pass after pass into a film, by one wavefront for each thread.
 class PassRenderer {
  public:
-  /// Called before a pass over samples [first, first + count) of every pixel. It gives the fewest
+  /// Called before a pass over rounds [first, first + count) of samples. It gives the fewest
   /// pixels of a job, where many are best traced together.
   using Prepare = std::function<std::size_t(uint32_t first, uint32_t count)>;
 
@@ -59,8 +60,9 @@ class PassRenderer {
     const Film::SampleCounts counts = film.sample_counts();
     samples_done_ = counts.fewest;
     ahead_ = counts.most - counts.fewest;
+    set_order();
     double sum = 0;
-    for (std::size_t i = 0; ahead_ > 0 && i < film.pixel_count(); ++i) sum += film.samples(i);
+    for (std::size_t i = 0; ahead_ > 0 && i < film.pixel_count(); ++i) sum += film.rounds(i);
     paths_done_ = ahead_ > 0 ? sum / static_cast<double>(film.pixel_count()) : samples_done_;
   }
 
@@ -73,7 +75,6 @@ class PassRenderer {
       samples = ahead_ > 0 ? ahead_ : std::min(samples, wanted - samples_done_);
       const double before = seconds_since(start_);
       deadline_.begin_pass(before, samples_done_ == 0);
-      if (prepare_) fewest_pixels_ = prepare_(settings_.first_sample + samples_done_, samples);
       const double share = pass(samples);
       if (over_) break;
       samples_done_ += samples;
@@ -119,20 +120,50 @@ class PassRenderer {
     return settings_.before ? settings_.before->counts : PathCounts{};
   }
 
-  /// Pixels that come one after the other.
+  /// Pixels that come one after the other, in the order of the picture or of order_, and their
+  /// samples in a pass.
   struct Run {
     std::size_t first = 0, count = 0;
+    uint32_t first_sample = 0, samples = 0;
+    SampleShare share = {};
+
+    double paths() const { return static_cast<double>(count) * samples; }
   };
 
+  /// Pixels of the same share side by side, where there are several.
+  void set_order() {
+    const SampleShare first = film_.share(0);
+    std::vector<uint32_t> order(film_.pixel_count());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto share = [&](uint32_t pixel) { return film_.share(pixel); };
+    if (std::all_of(order.begin(), order.end(), [&](uint32_t i) { return share(i) == first; })) {
+      return;
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return share(a).step() < share(b).step(); });
+    order_ = std::move(order);
+  }
+
   /// The pixels that a pass is about: all, but for those that have its samples already.
-  std::vector<Run> runs_of_pass() const {
-    const std::size_t pixels = film_.pixel_count();
-    if (ahead_ == 0) return {{0, pixels}};
+  /// @param pixels their number, with those that have no sample in it
+  std::vector<Run> runs_of_pass(uint32_t rounds, std::size_t& pixels) {
+    const uint32_t first = settings_.first_sample + samples_done_;
     std::vector<Run> runs;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      if (film_.samples(pixel) > samples_done_) continue;
-      if (runs.empty() || runs.back().first + runs.back().count != pixel)
-        runs.push_back({pixel, 0});
+    for (std::size_t i = 0; i < film_.pixel_count(); ++i) {
+      const std::size_t pixel = order_.empty() ? i : order_[i];
+      if (film_.rounds(pixel) > samples_done_) continue;
+      ++pixels;
+      const SampleShare share = film_.share(pixel);
+      const uint32_t begin = share.samples(first);
+      const uint32_t samples = share.samples(first + rounds) - begin;
+      if (samples == 0) {
+        film_.end_rounds(pixel, rounds);
+        continue;
+      }
+      if (runs.empty() || runs.back().first + runs.back().count != i ||
+          runs.back().share != share) {
+        runs.push_back({i, 0, begin, samples, share});
+      }
       ++runs.back().count;
     }
     return runs;
@@ -143,12 +174,14 @@ class PassRenderer {
    public:
     explicit PixelRefill(std::vector<Run> runs) : runs_(std::move(runs)) {}
 
-    /// The next pixels, at most so many; none if there are no more.
-    Run next(std::size_t wanted) {
+    /// The next pixels, for so many paths or this number of pixels at least; none if there are no
+    /// more.
+    Run next(std::size_t paths, std::size_t fewest) {
       const std::lock_guard lock(mutex_);
       if (runs_.empty()) return {};
       Run& run = runs_.back();
-      const Run taken{run.first, std::min(wanted, run.count)};
+      Run taken = run;
+      taken.count = std::min(std::max<std::size_t>(paths / run.samples, fewest), run.count);
       run.first += taken.count;
       run.count -= taken.count;
       if (run.count == 0) runs_.pop_back();
@@ -162,9 +195,15 @@ class PassRenderer {
 
   /// @return the share of the pixels that it was about
   double pass(uint32_t samples) {
-    const std::vector<Run> runs = runs_of_pass();
     std::size_t pixels = 0;
-    for (const Run& run : runs) pixels += run.count;
+    const std::vector<Run> runs = runs_of_pass(samples, pixels);
+    const double share = static_cast<double>(pixels) / static_cast<double>(film_.pixel_count());
+    double paths = 0;
+    for (const Run& run : runs) paths += run.paths();
+    if (runs.empty()) return share;
+    if (prepare_) fewest_pixels_ = prepare_(settings_.first_sample + samples_done_, samples);
+    // However many paths there are, the pass comes to its rounds of those pixels.
+    rounds_per_path_ = share * samples / paths;
     PixelRefill refill(runs);
     threads_.execute([&] {
       tbb::parallel_for(
@@ -172,12 +211,11 @@ class PassRenderer {
           [&](const tbb::blocked_range<int>&) { work(samples, refill); },
           tbb::simple_partitioner());
     });
-    return static_cast<double>(pixels) / static_cast<double>(film_.pixel_count());
+    return share;
   }
 
   /// One thread's part of a pass: takes the next pixels until there are none.
   void work(uint32_t samples, PixelRefill& refill) {
-    const auto pixels = static_cast<double>(film_.pixel_count());
     PathWavefront& wavefront = wavefronts_.local();
     const bool hasty = settings_.time_limit > 0 && !settings_.whole_passes && samples_done_ == 0;
     std::size_t paths = hasty ? kFewestPathsPerJob : kPathsPerJob;
@@ -187,10 +225,16 @@ class PassRenderer {
     PathJobSource jobs;
     jobs.next = [&]() -> std::optional<PathJob> {
       if (over_) return std::nullopt;
-      const Run run = refill.next(std::max<std::size_t>(paths / samples, fewest));
+      const Run run = refill.next(paths, fewest);
       if (run.count == 0) return std::nullopt;
       began = time();
-      return PathJob{run.first, run.count, settings_.first_sample + samples_done_, samples};
+      return PathJob{.first_pixel = run.first,
+                     .pixels = run.count,
+                     .first_sample = run.first_sample,
+                     .samples = run.samples,
+                     .rounds = samples,
+                     .share = run.share,
+                     .order = order_.empty() ? nullptr : order_.data()};
     };
     jobs.adding = &adding_;
     PathCounts* published = nullptr;
@@ -201,7 +245,7 @@ class PassRenderer {
     jobs.finished = [&](const PathJob& job) {
       *published = wavefront.counts();
       const auto paths_traced = static_cast<double>(job.sample_count());
-      paths_done_ += paths_traced / pixels;
+      paths_done_ += paths_traced * rounds_per_path_;
       if (hasty) paths = hasty_job_size(seconds_since(began) / paths_traced);
     };
     jobs.stop = [&] { return is_over(samples); };
@@ -267,7 +311,9 @@ class PassRenderer {
   /// Samples that all pixels have, and how many more some have: those of a pass that was broken
   /// off.
   uint32_t samples_done_ = 0, ahead_ = 0;
-  std::shared_mutex adding_;  // held alone to look at the film while threads are at work
+  std::vector<uint32_t> order_;  // of the pixels, by their shares; empty: that of the picture
+  double rounds_per_path_ = 0;   // of the pass, over all pixels
+  std::shared_mutex adding_;     // held alone to look at the film while threads are at work
   /// What each thread has counted when it added its last job; by whoever holds adding_.
   tbb::enumerable_thread_specific<PathCounts> published_;
   double next_checkpoint_;

@@ -26,7 +26,9 @@ void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, s
   if (jobs_.layers.on()) {
     jobs_.layers.scattering(path.result, path.scatterings, rgb_of(path, path.radiance, path.rgb));
   }
-  if (meter_ != nullptr) absorb_part(path, position_of(batch.rays, i), component);
+  if (meter_ != nullptr && !meter_->absorbed_of_scattered.empty()) {
+    absorb_part(path, position_of(batch.rays, i), component);
+  }
   if (path.scatterings++ == 0 && meter_ == nullptr) {
     record_medium_event(path, flights_.t[i], scatterer_of(path, component));
   }
@@ -60,7 +62,7 @@ Vec3f PathWavefront::position_of(const RayStream& rays, std::size_t i) const {
 }
 
 bool PathWavefront::survives(ScenePath& path, float u) const {
-  const float throughput = largest_magnitude(path.throughput);
+  const float throughput = magnitude(path);
   if (throughput == 0) return false;
   if (throughput >= setup_.roulette_threshold) return true;
   const float survival = throughput / setup_.roulette_threshold;
@@ -143,15 +145,15 @@ void PathWavefront::draw_direction_of(std::size_t i) {
 
 void PathWavefront::turn_scattered(std::size_t i, ScenePath& path) {
   path.pdf = scatterings_.next_pdf[i];
-  const bool has_side = meter_ != nullptr || scene_.domain;
-  if (has_side || scene_.surfaces) {
+  if (meter_ != nullptr) FluxMeter::tilt(scatterings_.next[meter_->axis()][i]);
+  if (has_sides_ || scene_.surfaces) {
     const Vec3f position = vector_at(scatterings_.position, i);
-    if (has_side || !scene_.is_clear_at(path.medium, position)) {
-      Vec3f direction = vector_at(scatterings_.next, i);
-      if (meter_ != nullptr) meter_->tilt(direction);
+    const Vec3f direction = vector_at(scatterings_.next, i);
+    if (scene_.surfaces && !scene_.is_clear_at(path.medium, position)) {
       turn(path, position, position, direction);
       return;
     }
+    set_side(path, position, direction);
   }
   // Most rays are needed nowhere but in the stream that is walked next.
   path.ends_at_surface = false;
@@ -174,15 +176,15 @@ void PathWavefront::send_scattered(const Walker& walker) {
     copy(scatterings_.position[axis], rays.origin[axis]);
     copy(scatterings_.next[axis], rays.direction[axis]);
   }
-  std::fill_n(rays.t_max.begin() + static_cast<std::ptrdiff_t>(first), count,
-              std::numeric_limits<float>::infinity());
   copy(scatterings_.pixel, rays.pixel);
   copy(scatterings_.sample, rays.sample);
   constexpr uint32_t kToNextWalk =
       stream_number(StreamPurpose::kWalk, 1) - stream_number(StreamPurpose::kScatter, 0);
   for (std::size_t n = 0; n < count; ++n) {
     rays.stream[first + n] = scatterings_.stream[going_on_[n]] + kToNextWalk;
-    batch.owners[first + n] = scattered_[going_on_[n]].slot;
+    const uint32_t slot = scattered_[going_on_[n]].slot;
+    batch.owners[first + n] = slot;
+    rays.t_max[first + n] = has_sides_ ? paths_[slot].side : std::numeric_limits<float>::infinity();
   }
   if (!rays.weighted()) return;
   for (std::size_t n = 0; n < count; ++n) {
@@ -199,6 +201,7 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   kernels_.gather(batch.rays, flights_, scatterings_);
   const bool draws_lights = meter_ == nullptr && scene_.lights->is_drawn();
   const bool chooses_light = draws_lights && only_light_ == nullptr;
+  const bool is_viewed = meter_ != nullptr && !meter_->views.empty();
   kernels_.draw_numbers(scatterings_, setup_.seed,
                         chooses_light ? kScatteringBlocks : kBlocksWithoutLight);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
@@ -218,7 +221,7 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
     if (path.is_dead) continue;
-    if (meter_ != nullptr) show_collision(i);
+    if (is_viewed) show_collision(i);
     if (draws_lights) cast_shadow(i);
     if (guide != nullptr) draw_emission(i, *guide);
     if (scatterings_.is_given[i] != 0) draw_direction_of(i);

@@ -23,7 +23,7 @@ void PathWavefront::find_surface(ScenePath& path) {
 void PathWavefront::send(std::size_t slot) {
   ScenePath& path = paths_[slot];
   path.is_sent = true;
-  set_side(path);
+  set_side(path, path.origin, path.direction);
   if (needs_surfaces_first(path)) find_surface(path);
   if (path.medium == kVacuum) {
     sent_in_vacuum_.push_back(static_cast<uint32_t>(slot));
@@ -75,12 +75,10 @@ void PathWavefront::fly() {
   }
 }
 
-void PathWavefront::set_side(ScenePath& path) const {
-  if (scene_.domain) {
-    path.side = scene_.domain->way_to_side(path.origin, path.direction);
-  } else if (meter_ != nullptr) {
-    path.side = meter_->way_to_plane(path.origin, path.direction, path.level);
-  }
+void PathWavefront::set_side(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
+  if (!has_sides_) return;
+  path.side = scene_.domain ? scene_.domain->way_to_side(origin, direction)
+                            : meter_->way_to_plane(origin, direction, path.level);
 }
 
 void PathWavefront::pass_side(ScenePath& path) {
@@ -128,6 +126,8 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
       path.throughput[c] = flights_.weight[c][i];
       path.density[c] = flights_.density[c][i];
     }
+  } else if (meter_ != nullptr) {
+    path.throughput[0] *= flights_.weight[0][i];
   } else {
     // A walker of one channel serves all, or the only one that there is.
     if (const float emitted = flights_.emitted[0][i]; emitted != 0) {
@@ -135,7 +135,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
     }
     path.throughput *= flights_.weight[0][i];
   }
-  if (!(largest_magnitude(path.throughput) < kLargestThroughput)) {
+  if (!(magnitude(path) < kLargestThroughput)) {
     path.radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
     path.is_dead = true;
     return;

@@ -28,7 +28,7 @@ void PathWavefront::start_light(std::size_t path_number, ScenePath& path) {
   path.pixel = static_cast<uint32_t>(open.job.first_pixel);
   path.sample_key = open.job.first_sample + static_cast<uint32_t>(path_number);
   path.colors = setup_.colors.front().get();
-  path.throughput = SampledSpectrum(1.0F);
+  path.throughput[0] = 1;
   RandomStream random(setup_.seed, path.pixel, path.sample_key,
                       stream_number(StreamPurpose::kCamera, 0));
   const FluxMeter::Start start = meter_->start(random);
@@ -64,7 +64,6 @@ void PathWavefront::arrive_at_ground(const ScenePath& path, const Vec3f& positio
 
 void PathWavefront::absorb_part(const ScenePath& path, const Vec3f& position,
                                 std::size_t component) {
-  if (meter_->absorbed_of_scattered.empty()) return;
   const float share = meter_->absorbed_of_scattered[component];
   if (share == 0) return;
   // What scatters is to what stays as their coefficients are.
@@ -140,8 +139,8 @@ bool PathWavefront::take_branch(ScenePath& path) {
   const FluxRecord::Branch& branch = waiting.back();
   path.origin = branch.origin;
   path.direction = branch.direction;
-  path.throughput = SampledSpectrum(branch.weight);
-  path.density = SampledSpectrum(branch.density);
+  path.throughput[0] = branch.weight;
+  path.density[0] = branch.density;
   path.pixel = branch.pixel;
   path.level = branch.level;
   path.flights = branch.flights;

@@ -96,11 +96,10 @@ void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, 
     radiance += jobs_.spectra[done.result_of(sample, per_sample) + c];
   }
   const PixelSample at = pixel_sample_of(job, sample);
-  const SpectrumValues& values = colors_of(at.pixel, at.sample).spectra;
+  const SpectrumValues& values = colors_of(at).spectra;
   // In the light's units, which the colour matching of our observer takes out.
   constexpr auto kLightUnit = static_cast<float>(1 / kLuminousIntegral);
-  film.add_spectrum(job.first_pixel + sample / job.samples,
-                    std::span(values.wavelengths()).first(values.channels()),
+  film.add_spectrum(job.pixel_of(sample), std::span(values.wavelengths()).first(values.channels()),
                     radiance * (scene_.exposure_scale * kLightUnit));
 }
 
@@ -132,8 +131,9 @@ void PathWavefront::add_to_film(const OpenJobs::Job& done, Film& film) const {
         layers += jobs_.layers[first + c];
       }
     }
-    film.add(job.first_pixel + i / job.samples, sum, layers);
+    film.add(job.pixel_of(i), sum, layers);
     if (records_spectra_) add_spectrum(done, i, film);
+    if ((i + 1) % job.samples == 0) film.end_rounds(job.pixel_of(i), job.rounds);
   }
 }
 

@@ -22,6 +22,7 @@ PathWavefront::PathWavefront(const PathSetup& setup)
     : setup_(setup),
       scene_(*setup.scene),
       meter_(setup.meter),
+      has_sides_(scene_.domain || (meter_ != nullptr && !meter_->splits.empty())),
       media_sets_(*setup.scene, *setup.factory),
       paths_(setup.slots),
       slots_(setup.slots),
@@ -189,7 +190,7 @@ void PathWavefront::set_order(OpenJobs::Job& opened) {
   opened.started.resize(total);
   for (std::size_t i = 0; i < total; ++i) {
     const PixelSample at = pixel_sample_of(job, i);
-    sets_[i] = setup_.factory->set_of(at.pixel, at.sample) - setup_.first_set;
+    sets_[i] = at.set - setup_.first_set;
     ++begin_of_set_[sets_[i] + 1];
   }
   std::partial_sum(begin_of_set_.begin(), begin_of_set_.end(), begin_of_set_.begin());
@@ -201,9 +202,9 @@ void PathWavefront::set_order(OpenJobs::Job& opened) {
 
 PathWavefront::PixelSample PathWavefront::pixel_sample_of(const PathJob& job,
                                                           std::size_t number) const {
-  const auto ordinal = static_cast<uint32_t>(number);  // whose divisions take a third of the time
-  return {window_.in_picture(job.first_pixel + ordinal / job.samples),
-          job.first_sample + ordinal % job.samples};
+  const uint32_t pixel = window_.in_picture(job.pixel_of(number));
+  const uint32_t sample = job.first_sample + static_cast<uint32_t>(number) % job.samples;
+  return {pixel, sample, setup_.factory->set_of(pixel, sample, job.share)};
 }
 
 std::array<float, 2> PathWavefront::film_pair(const SampleSequence& numbers, uint32_t pixel,
@@ -223,12 +224,12 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   const auto per_sample = static_cast<uint32_t>(setup_.factory->paths_per_sample());
   const uint32_t ordered = order_[number / per_sample];
   const auto channel = static_cast<int>(number % per_sample);
-  const auto [picture_pixel, sample_number] = pixel_sample_of(jobs_[newest_].job, ordered);
+  const PixelSample at = pixel_sample_of(jobs_[newest_].job, ordered);
   path.result = static_cast<uint32_t>(jobs_[newest_].first) + number;
-  path.pixel = picture_pixel;
-  path.sample_key = sample_number * per_sample + channel;
+  path.pixel = at.pixel;
+  path.sample_key = at.sample * per_sample + channel;
   // The paths of a sample start one after the other.
-  if (channel == 0) colors_of_sample_ = &colors_of(path.pixel, sample_number);
+  if (channel == 0) colors_of_sample_ = &colors_of(at);
   path.colors = colors_of_sample_;
   const int channels = path.colors->spectra.channels();
   if (per_sample > 1) {
@@ -241,16 +242,17 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   }
 
   // The channels' paths of a sample share its place on the film.
-  const SampleSequence numbers(scene_.samples, setup_.seed, path.pixel, sample_number);
-  const auto film = film_pair(numbers, path.pixel, sample_number);
+  const SampleSequence numbers(scene_.samples, setup_.seed, path.pixel, at.sample);
+  const auto film = film_pair(numbers, path.pixel, at.sample);
   const FilterSample filtered = scene_.filter.sample(film[0], film[1]);
-  const auto width = static_cast<uint32_t>(scene_.camera->width());
+  const auto width = static_cast<uint32_t>(window_.full_width);
   const float x = static_cast<float>(path.pixel % width) + 0.5F + filtered.x;
   const uint32_t row = path.pixel / width;
   const float y = static_cast<float>(row) + 0.5F + filtered.y;
   std::array<float, 2> lens{};
   if (scene_.camera->has_lens()) lens = numbers.pair(kLensDimension);
-  const CameraRay ray = scene_.camera->ray(x, y, lens[0], lens[1]);
+  const float edge = setup_.pixel_edge;
+  const CameraRay ray = scene_.camera->ray(x * edge, y * edge, lens[0], lens[1]);
   path.throughput *= filtered.weight;
   path.origin = path.turned_at = Vec3f(ray.origin - scene_.origin);
   path.direction = ray.direction;

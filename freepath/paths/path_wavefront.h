@@ -2,6 +2,7 @@
 /// @file A wavefront of paths through a scene of media, surfaces and lights.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -48,6 +49,8 @@ struct PathSetup {
   /// Lights in or near media whose light lines bring; null: scatterings alone do.
   const NearLights* near_lights = nullptr;
   std::size_t slots = kPathsInFlight;
+  /// Pixels of the camera along the edge of a pixel of the film.
+  float pixel_edge = 1;
   /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const SampleSpectra>> colors;
   uint32_t first_set = 0;
@@ -95,6 +98,7 @@ class PathWavefront {
   struct PixelSample {
     uint32_t pixel;   ///< Number in the picture.
     uint32_t sample;  ///< Number in the pixel.
+    uint32_t set;     ///< Of the wavelengths.
   };
   /// @param number of the job's samples, pixel by pixel
   PixelSample pixel_sample_of(const PathJob& job, std::size_t number) const;
@@ -105,9 +109,8 @@ class PathWavefront {
   /// Takes in the paths that have ended, and the jobs that have with them; others start in their
   /// places.
   void end_paths(const PathJobSource& jobs, Film& film);
-  /// @param pixel of the picture
-  const SampleSpectra& colors_of(uint32_t pixel, uint32_t sample) const {
-    return *setup_.colors[setup_.factory->set_of(pixel, sample) - setup_.first_set];
+  const SampleSpectra& colors_of(const PixelSample& sample) const {
+    return *setup_.colors[sample.set - setup_.first_set];
   }
   /// Puts the ray of a path among those that fly next.
   void send(std::size_t slot);
@@ -118,7 +121,8 @@ class PathWavefront {
   void fly();
   /// Where no collision has ended a ray.
   void end_flight(std::size_t slot);
-  void set_side(ScenePath& path) const;
+  /// Sets the length of a ray up to a side of the domain, or a plane where paths split.
+  void set_side(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   void pass_side(ScenePath& path);
   void take_flight(const WalkBatches::Batch& batch, std::size_t i);
   /// Takes the ray of a path back from a stream, if it lies there alone.
@@ -233,6 +237,10 @@ class PathWavefront {
   /// @param u in (0, 1)
   /// @return false if the path has ended
   bool survives(ScenePath& path, float u) const;
+  /// Largest magnitude of a path's throughput; no number below infinity if a channel is none.
+  float magnitude(const ScenePath& path) const {
+    return meter_ != nullptr ? std::abs(path.throughput[0]) : largest_magnitude(path.throughput);
+  }
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   /// Sends a path on in a new direction.
   void turn(ScenePath& path, const Vec3f& from, const Vec3f& origin, const Vec3f& direction) const;
@@ -270,7 +278,8 @@ class PathWavefront {
 
   const PathSetup& setup_;
   const PathScene& scene_;
-  const FluxMeter* meter_;  // of the setup
+  const FluxMeter* meter_;  // of the setup; its paths carry the first channel alone
+  bool has_sides_;          // whether rays end at sides of a domain, or at planes
   MediaSetTable media_sets_;
   MediaSetId camera_media_ = 0;
   std::optional<Box3f> everything_;                        // around the medium, if that is all

@@ -9,8 +9,10 @@
 
 #include "freepath/base/error.h"
 #include "freepath/base/threads.h"
+#include "freepath/paths/noise_target.h"
 #include "freepath/paths/pass_renderer.h"
 #include "freepath/paths/path_wavefront.h"
+#include "freepath/paths/sample_plan.h"
 #include "freepath/paths/shadow_guide.h"
 
 namespace freepath {
@@ -30,10 +32,10 @@ std::size_t fewest_pixels(const WavelengthSampler& factory, std::size_t pixels, 
 }
 
 /// Makes the colours of the sets that samples may have; those that are there already stay.
-void prepare_colors(PathSetup& setup, uint32_t first_sample, uint32_t samples) {
+void prepare_colors(PathSetup& setup, uint32_t first_round, uint32_t rounds) {
   const uint32_t block = setup.factory->sets_per_block();
-  const uint32_t first = first_sample / block * block;
-  const uint32_t count = (first_sample + samples - 1) / block * block + block - first;
+  const uint32_t first = first_round / block * block;
+  const uint32_t count = (first_round + rounds - 1) / block * block + block - first;
   std::vector<std::shared_ptr<const SampleSpectra>> colors(count);
   for (std::size_t i = 0; i < setup.colors.size(); ++i) {
     const std::size_t set = setup.first_set + i;
@@ -64,6 +66,39 @@ Film begin_film(const PixelWindow& window, ColorMode mode, const RenderSettings&
   return film;
 }
 
+/// A coarse picture by few samples.
+struct Pilot {
+  PilotGrid grid;
+  Film film;
+  double seconds = 0;
+  bool is_stopped = false;
+};
+
+/// Renders the pilot of a picture, all of it whatever is cropped: parts of a picture have the same.
+Pilot render_pilot(PathSetup setup, const RenderSettings& settings,
+                   const ProgressFunction& progress) {
+  const Camera& camera = *setup.scene->camera;
+  const PilotGrid grid = PilotGrid::over(camera.width(), camera.height());
+  Pilot pilot{grid, Film(PixelWindow::whole(grid.width, grid.height), {}, {}, kFirstPilotSample)};
+  setup.pixel_edge = static_cast<float>(grid.edge);
+  RenderSettings few = pilot_settings(settings);
+  few.first_sample = kFirstPilotSample;
+  few.samples = kPilotSamples;
+  const ProgressFunction wait = [&](const RenderProgress& now) {
+    return progress({0, double(settings.samples), now.seconds});
+  };
+  const auto prepare = [&](uint32_t first, uint32_t count) {
+    prepare_colors(setup, first, count);
+    return std::size_t{1};
+  };
+  const ProgressFunction reported = progress ? wait : ProgressFunction();
+  PassRenderer passes([&] { return PathWavefront(setup); }, few, reported, pilot.film, prepare);
+  passes.run();
+  pilot.seconds = passes.seconds();
+  pilot.is_stopped = passes.stop_is_wished();
+  return pilot;
+}
+
 }  // namespace
 
 std::string standard_tracker(const PathScene& scene) {
@@ -78,6 +113,11 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
                           const ProgressFunction& progress) {
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
+  }
+  constexpr auto kMostAdaptive = static_cast<uint32_t>(kFirstPilotSample / SampleShare::kLargest);
+  if (settings.adaptive && (settings.samples > kMostAdaptive ||
+                            settings.first_sample > kMostAdaptive - settings.samples)) {
+    fail("an adaptive picture has at most {} samples; render more without", kMostAdaptive);
   }
   const PixelWindow window =
       pixel_window(settings.crop, scene.camera->width(), scene.camera->height());
@@ -118,10 +158,24 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
     prepare_colors(setup, first, count);
     return fewest_pixels(factory, pixels, count);
   };
-  PassRenderer passes([&] { return PathWavefront(setup); }, settings, progress, result.film,
-                      prepare);
+  RenderSettings rest = settings;
+  bool is_stopped = false;
+  const ProgressFunction go_on = [&](const RenderProgress& now) {
+    return progress(now) && !is_stopped;
+  };
+  if (settings.adaptive && !settings.before) {
+    const Pilot pilot = render_pilot(setup, settings, progress);
+    is_stopped = pilot.is_stopped;
+    give_shares(shares_of_pilot(pilot.film), pilot.grid, result.film);
+    constexpr double kLeast = 1e-3;
+    if (settings.time_limit > 0) {
+      rest.time_limit = std::max(kLeast, settings.time_limit - pilot.seconds);
+    }
+  }
+  const ProgressFunction reported = progress ? go_on : ProgressFunction();
+  PassRenderer passes([&] { return PathWavefront(setup); }, rest, reported, result.film, prepare);
   passes.run();
-  finish_result(passes, settings, result);
+  finish_result(passes, rest, result);
   return result;
 }
 

@@ -46,6 +46,9 @@ struct RenderSettings {
   bool chooses_transmittance = false;
   /// Casts shadow rays that bring little by Russian roulette (ShadowGuide); else all are cast.
   bool shadow_roulette = true;
+  /// Gives pixels the shares of the samples that a pilot asks for (sample_plan.h): `samples` is
+  /// their mean over all pixels then.
+  bool adaptive = false;
   /// Finds the light of lights in or near media along lines, whose variance has an end
   /// (NearLights); else at scatterings alone.
   bool near_light_lines = true;

@@ -120,9 +120,10 @@ uint32_t WavelengthSampler::choose_sets_per_block() const {
   return sets;
 }
 
-uint32_t WavelengthSampler::set_of(uint32_t pixel, uint32_t sample) const {
-  if (sets_per_block_ == 1) return sample;
-  const uint32_t block = sample / sets_per_block_;
+uint32_t WavelengthSampler::set_of(uint32_t pixel, uint32_t sample, SampleShare share) const {
+  const uint32_t round = share.is_one() ? sample : share.round_of(sample);
+  if (sets_per_block_ == 1) return round;
+  const uint32_t block = round / sets_per_block_;
   // Of a stream that nothing else uses.
   RandomStream random(walk_.seed, pixel, block, 0xFFFFFFFEU);
   const uint32_t bits = reversed_bits(sample) ^ random.bits();

@@ -11,6 +11,7 @@
 #include "freepath/paths/emission_guide.h"
 #include "freepath/paths/media_combinations.h"
 #include "freepath/paths/path_scene.h"
+#include "freepath/sensors/sample_share.h"
 #include "freepath/spectra/spectrum_table.h"
 #include "freepath/transport/walker.h"
 #include "freepath/transport/weight_growth.h"
@@ -90,7 +91,8 @@ class WavelengthSampler {
 
   /// Number of the set of wavelengths that a sample has; in R, G, B its own.
   /// @param pixel of the whole picture
-  uint32_t set_of(uint32_t pixel, uint32_t sample) const;
+  /// @param share of the pixel: its samples in a block of rounds have the sets of the block
+  uint32_t set_of(uint32_t pixel, uint32_t sample, SampleShare share = {}) const;
   /// Sets of a block, a power of two. Samples [K·b, K·(b + 1)) have sets of the same numbers.
   uint32_t sets_per_block() const { return sets_per_block_; }
   std::shared_ptr<const SampleSpectra> colors_of_set(uint32_t set) const;

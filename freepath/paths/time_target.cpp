@@ -23,7 +23,7 @@ TimePlan plan_time(const PathScene& scene, ColorMode mode, const RenderSettings&
   if (result.samples == 0 || result.interrupted) return plan;
   double samples = 0;
   for (std::size_t pixel = 0; pixel < result.film.pixel_count(); ++pixel) {
-    samples += result.film.samples(pixel);
+    samples += result.film.rounds(pixel);
   }
   samples /= static_cast<double>(result.film.pixel_count());
   const double left = std::max(0.0, settings.time_limit - result.seconds);

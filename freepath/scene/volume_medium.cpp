@@ -56,22 +56,18 @@ void add_components(Volume volume, std::vector<Component>& components,
   if (densities != 1 && densities != kChannels) {
     fail("a volume has one density, or three for R, G and B, not {}", densities);
   }
-  std::array<RadianceField, kChannels> glow;
-  Rgb emission = volume.optics.emission.value_or(Rgb(0.0F));
+  Component glowing;
+  glowing.emission = volume.optics.emission.value_or(Rgb(0.0F));
   std::optional<TemperatureEmission> temperature;
   if (volume.temperature) {
     temperature = {volume.temperature, volume.optics.temperature_scale,
                    volume.optics.temperature_offset};
-    glow = glow_of(*temperature);
-    const Rgb scale = volume.optics.emission.value_or(Rgb(1.0F));
-    emission = glow[0].field ? scale : Rgb(0.0F);
+    set_thermal_emission(*temperature, volume.optics.emission.value_or(Rgb(1.0F)), glowing);
   }
   for (std::size_t i = 0; i < densities; ++i) {
-    Component component;
-    component.radiance = glow;
+    Component component = glowing;
     component.density = std::make_shared<const Field>(std::move(volume.densities[i]));
     component.phase = volume.optics.phase;
-    component.emission = emission;
     set_coefficients(volume.optics, component);
     if (densities > 1) {
       Rgb only(0.0F);
@@ -166,6 +162,12 @@ std::vector<SceneMediumComponent> spectra_of(const VolumeMedium& medium, Spectru
 
 }  // namespace
 
+void set_thermal_emission(const TemperatureEmission& emission, const Rgb& factor,
+                          Component& component) {
+  component.radiance = glow_of(emission);
+  component.emission = component.radiance[0].field ? factor : Rgb(0.0F);
+}
+
 VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel, const PeriodicSides& sides) {
   VolumeMedium result;
   if (sides.any()) {
@@ -186,6 +188,19 @@ VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel, const Per
   }
   result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
   check_optical_depth(*result.medium);
+  return result;
+}
+
+VolumeMedium medium_in_channel(const VolumeMedium& medium, int channel, int super_voxel) {
+  std::vector<Component> components = medium.medium->components();
+  for (Component& component : components) {
+    component.sigma_a = Rgb(component.sigma_a[channel]);
+    component.sigma_s = Rgb(component.sigma_s[channel]);
+    component.emission = Rgb(component.emission[channel]);
+    component.radiance.fill(RadianceField(component.radiance[channel]));
+  }
+  VolumeMedium result = medium;
+  result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
   return result;
 }
 

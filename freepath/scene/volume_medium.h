@@ -23,12 +23,21 @@ struct VolumeMedium {
   PeriodicSides sides = {};
 };
 
+/// Lets a component glow as a black body of temperatures, in R, G and B.
+/// @param factor multiplies its radiance
+void set_thermal_emission(const TemperatureEmission& emission, const Rgb& factor,
+                          Component& component);
+
 /// The volumes' densities as components of one medium, in their order; they may overlap anyhow.
 /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
 /// @throws Error for coefficients out of range, another number of densities in a volume than one or
 ///   three, and as repeat_sides and Medium
 VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel,
                          const PeriodicSides& sides = {});
+
+/// The medium as it is in one of the channels R, G and B: grey.
+/// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
+VolumeMedium medium_in_channel(const VolumeMedium& medium, int channel, int super_voxel);
 
 /// Checks that single precision tells the tentative collisions of a walk through a medium apart.
 /// @throws Error, naming the densest grid, for an optical depth across it that is too large

@@ -89,7 +89,7 @@ void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& l
     ++sums.non_finite;
     return;
   }
-  const bool is_even = (first_sample_ + sums.samples) % 2 == 0;
+  const bool is_even = (first_sample(pixel) + sums.samples) % 2 == 0;
   if (is_even) {
     add_to(pixel, kEven, sample.radiance);
     ++sums.even_samples;
@@ -132,6 +132,8 @@ void Film::add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
 void Film::merge_pixel(std::size_t pixel, const Film& other, std::size_t other_pixel) {
   Pixel& sums = pixels_[pixel];
   const Pixel& more = other.pixels_[other_pixel];
+  if (sums.samples == 0) sums.share = more.share;
+  sums.rounds += more.rounds;
   for (int i = 0; i < kPixelSums; ++i) {
     Sum2::merge(sums.sums[i], sums.tops[i], more.sums[i], more.tops[i]);
   }
@@ -158,13 +160,18 @@ void Film::merge_pixel(std::size_t pixel, const Film& other, std::size_t other_p
 }
 
 Film::SampleCounts Film::sample_counts() const {
-  SampleCounts counts{pixels_[0].samples, 0, 0};
-  for (const Pixel& pixel : pixels_) {
-    counts.fewest = std::min(counts.fewest, pixel.samples);
-    counts.most = std::max(counts.most, pixel.samples);
-    if (pixel.samples == 0) ++counts.pixels_without;
+  SampleCounts counts{rounds(0), 0, 0};
+  for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
+    counts.fewest = std::min(counts.fewest, rounds(pixel));
+    counts.most = std::max(counts.most, rounds(pixel));
+    if (pixels_[pixel].samples == 0) ++counts.pixels_without;
   }
   return counts;
+}
+
+bool Film::has_shares() const {
+  return std::any_of(pixels_.begin(), pixels_.end(),
+                     [](const Pixel& pixel) { return !SampleShare(pixel.share).is_one(); });
 }
 
 Film::NonFinite Film::non_finite_samples() const {
@@ -209,7 +216,7 @@ void Film::put_layer(Layer layer, std::size_t pixel, std::vector<float>& values)
       return put(weight != 0 ? sums.value(kDepth) / weight : 0);
     }
     case Layer::kLookups:
-      return put(static_cast<double>(sums.lookups) / n);
+      return put(mean_lookups(pixel));
     case Layer::kVariance:
       // As a float it may be infinite, and then says so.
       for (int c = 0; c < kChannels; ++c) values.push_back(static_cast<float>(variance(pixel, c)));
@@ -267,6 +274,7 @@ void Film::check_sums() const {
     if (top < Sum2::kLowest || top > Sum2::kHighest) fail("its sums are damaged");
   };
   for (const Pixel& pixel : pixels_) {
+    if (pixel.share >= SampleShare::kSteps) fail("its shares of samples are damaged");
     for (const int8_t top : pixel.tops) check(top);
     for (const int8_t top : pixel.square_tops) check(top);
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// @file The film: what the paths of each pixel add up to.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "freepath/io/image.h"
 #include "freepath/sensors/layers.h"
 #include "freepath/sensors/pixel_window.h"
+#include "freepath/sensors/sample_share.h"
 #include "freepath/sensors/wavelength_buckets.h"
 
 namespace freepath {
@@ -52,7 +54,8 @@ struct LayerSample {
   }
 };
 
-/// Samples of pixels, by their numbers: [first, first + count).
+/// Samples of pixels, by their numbers: [first, first + count); of rounds, where pixels take
+/// shares.
 struct SampleRange {
   uint32_t first = 0;
   uint32_t count = 0;
@@ -64,11 +67,14 @@ struct SampleRange {
 /// Sums over the paths of each pixel.
 ///
 /// Sums don't depend on the order in which samples come, nor on how they are shared out among films
-/// that are merged (BinnedSum). A pixel's samples are numbered from the film's first one on, as
-/// they are added, by one thread at a time; different pixels may be added to at the same time.
+/// that are merged (BinnedSum). A pixel's samples are numbered from its first one on, as they are
+/// added, by one thread at a time; different pixels may be added to at the same time.
+///
+/// Pixels may take different shares of the samples (SampleShare). What counts then are rounds: of a
+/// pixel whose share is 1, as it is of all at first, they are its samples.
 class Film {
  public:
-  /// @param first_sample number of the first sample of each pixel
+  /// @param first_sample number of the first round of samples of each pixel
   /// @throws Error for an empty film
   explicit Film(const PixelWindow& window, LayerSet layers = LayerSet::standard(),
                 const WavelengthBuckets& buckets = {}, uint32_t first_sample = 0);
@@ -81,7 +87,21 @@ class Film {
   /// What it records, which takes memory.
   LayerSet layers() const { return layers_; }
   const WavelengthBuckets& buckets() const { return buckets_; }
+  /// Number of the first round.
   uint32_t first_sample() const { return first_sample_; }
+  /// Number of the first sample of a pixel.
+  uint32_t first_sample(std::size_t pixel) const { return share(pixel).samples(first_sample_); }
+  SampleShare share(std::size_t pixel) const { return SampleShare(pixels_[pixel].share); }
+  /// Whether the share of any pixel is not 1.
+  bool has_shares() const;
+  /// Sets the share of a pixel that has no samples yet.
+  void set_share(std::size_t pixel, SampleShare share) { pixels_[pixel].share = share.step(); }
+  /// Rounds of a pixel whose samples were all added.
+  uint32_t rounds(std::size_t pixel) const {
+    return share(pixel).is_one() ? pixels_[pixel].samples : pixels_[pixel].rounds;
+  }
+  /// Tells that the samples of so many more rounds of a pixel were added.
+  void end_rounds(std::size_t pixel, uint32_t rounds) { pixels_[pixel].rounds += rounds; }
   static std::size_t bytes_per_pixel(LayerSet layers, const WavelengthBuckets& buckets = {});
 
   /// Sets the primaries of the space of R, G and B; sRGB's where none are set. Its pictures carry
@@ -106,13 +126,15 @@ class Film {
   void add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
                     const SampledSpectrum& radiance);
 
-  /// Adds the samples of a pixel of another film, which are other ones than its own.
+  /// Adds the samples of a pixel of another film, which are other ones than its own. It takes that
+  /// one's share where it has no samples yet; where the shares differ, its rounds mean nothing
+  /// after.
   /// @param other with the same layers and buckets
   void merge_pixel(std::size_t pixel, const Film& other, std::size_t other_pixel);
 
   /// Samples of a pixel that were added.
   uint32_t samples(std::size_t pixel) const { return pixels_[pixel].samples; }
-  /// How many samples the pixels have.
+  /// How many rounds of samples the pixels have.
   struct SampleCounts {
     uint32_t fewest = 0;
     uint32_t most = 0;
@@ -130,6 +152,10 @@ class Film {
   double variance(std::size_t pixel, int channel) const;
   /// The mean of a pixel's channel.
   double mean(std::size_t pixel, int channel) const;
+  /// The mean number of look-ups of a pixel's samples.
+  double mean_lookups(std::size_t pixel) const {
+    return static_cast<double>(pixels_[pixel].lookups) / std::max(1U, pixels_[pixel].samples);
+  }
 
   /// The picture: R, G, B, A and the layers (layer_infos()).
   ///
@@ -170,9 +196,10 @@ class Film {
     uint32_t even_samples = 0;  // those of even number
     uint32_t non_finite = 0;
     uint32_t overflows = 0;
+    uint32_t rounds : 28 = 0;  // where the share is not 1
+    uint32_t share : 4 = SampleShare().step();
     std::array<int8_t, kPixelSums> tops = filled<kPixelSums>();
     std::array<int8_t, kChannels> square_tops = filled<kChannels>();
-    std::array<int8_t, 4> unused = {};  // so that all bytes of a file are known
 
     void add(int sum, double value) { Sum2::add(sums[sum], tops[sum], value); }
     double value(int sum) const { return Sum2::value(sums[sum], tops[sum]); }

@@ -10,6 +10,7 @@
 
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
+#include "freepath/study/comparison_evaluation.h"
 #include "freepath/study/flip.h"
 #include "freepath/study/process_time.h"
 #include "freepath/study/run_seed.h"
@@ -78,18 +79,21 @@ class Experiment {
       : target_(target), settings_(settings), progress_(progress) {}
 
   Comparison run() {
-    configurations_ = tried_configurations(target_, settings_);
-    name_configurations();
-    get_references();
-    for (int repeat = 0; repeat < settings_.repeats; ++repeat) {
+    prepare();
+    for (int repeat = settings_.first_round; repeat < end_round(); ++repeat) {
       const std::size_t count = configurations_.size();
       for (std::size_t i = 0; i < count; ++i) {
         run_once((i + static_cast<std::size_t>(repeat)) % count, repeat);
       }
     }
-    evaluate();
+    result_.level = settings_.level;
+    evaluate(result_);
     result_.seconds = clock_.seconds();
     return std::move(result_);
+  }
+  std::vector<Reference> references() {
+    prepare();
+    return std::move(result_.references);
   }
 
  private:
@@ -100,13 +104,20 @@ class Experiment {
     uint32_t samples = 0;
   };
 
+  void prepare() {
+    configurations_ = tried_configurations(target_, settings_);
+    name_configurations();
+    get_references();
+  }
+  int end_round() const {
+    return settings_.end_round > 0 ? settings_.end_round : settings_.repeats;
+  }
   void name_configurations();
   void get_references();
+  Reference reference_by_plan(const Configuration& standard);
   void run_once(std::size_t which, int repeat);
-  void evaluate();
   /// Takes in the errors of a run's picture, and the picture itself.
   void take_picture(std::size_t which, ComparisonRun& run, PixelEstimates picture);
-  void find_efficiencies();
   /// Looks at a film whenever it has twice the samples that it had.
   std::function<void(const Film&)> watcher(std::size_t which, Watch& watch,
                                            const Clock& clock) const;
@@ -129,7 +140,7 @@ class Experiment {
   }
   /// Share of the work that references take, by time or samples, whichever both are given in.
   double reference_share() const {
-    if (!settings_.reference.file.empty()) return 0;
+    if (!settings_.reference.file.empty() || !settings_.references.empty()) return 0;
     const auto share = [&](double reference, double run) {
       return reference / (reference + run * static_cast<double>(configurations_.size()));
     };
@@ -193,7 +204,6 @@ void Experiment::get_references() {
   // Drawing one voxel by its trilinear weight shows the same field on average.
   std::optional<std::size_t> nearest;
   std::optional<std::size_t> trilinear;
-  const double share = reference_share();
   for (const Configuration& configuration : configurations_) {
     const bool is_nearest = configuration.interpolation == Interpolation::kNearest;
     std::optional<std::size_t>& index = is_nearest ? nearest : trilinear;
@@ -207,14 +217,20 @@ void Experiment::get_references() {
             "fields differ",
             settings_.reference.file);
       }
-      Reference reference =
-          get_reference(target_, settings_.reference, standard, settings_.render,
-                        progress_of("reference", 0, share, settings_.reference.time));
-      if (reference.estimates.mean.empty()) throw Interrupted("interrupted: nothing is written");
-      result_.references.push_back(std::move(reference));
+      result_.references.push_back(*index < settings_.references.size()
+                                       ? settings_.references[*index]
+                                       : reference_by_plan(standard));
     }
     result_.reference_of.push_back(*index);
   }
+}
+
+Reference Experiment::reference_by_plan(const Configuration& standard) {
+  Reference reference =
+      get_reference(target_, settings_.reference, standard, settings_.render,
+                    progress_of("reference", 0, reference_share(), settings_.reference.time));
+  if (reference.estimates.mean.empty()) throw Interrupted("interrupted: nothing is written");
+  return reference;
 }
 
 std::function<void(const Film&)> Experiment::watcher(std::size_t which, Watch& watch,
@@ -239,11 +255,13 @@ void Experiment::run_once(std::size_t which, int repeat) {
   render.walk.seed = run_seed(settings_.seed, which, repeat);
   render.time_limit = settings_.time / settings_.repeats;
   render.samples = (settings_.samples + settings_.repeats - 1) / settings_.repeats;
-  const auto runs = static_cast<double>(configurations_.size() * settings_.repeats);
-  const double done = static_cast<double>(repeat) * result_.configurations.size() +
-                      static_cast<double>((which + result_.configurations.size() -
-                                           repeat % result_.configurations.size()) %
-                                          result_.configurations.size());
+  const int rounds = end_round() - settings_.first_round;
+  const auto runs = static_cast<double>(configurations_.size() * rounds);
+  const double done =
+      static_cast<double>(repeat - settings_.first_round) * result_.configurations.size() +
+      static_cast<double>(
+          (which + result_.configurations.size() - repeat % result_.configurations.size()) %
+          result_.configurations.size());
   const double share = reference_share();
   const std::string step =
       fmt::format("{}, run {} of {}", result.name, repeat + 1, settings_.repeats);
@@ -289,62 +307,7 @@ void Experiment::take_picture(std::size_t which, ComparisonRun& run, PixelEstima
   }
 }
 
-void Experiment::evaluate() {
-  for (std::size_t which = 0; which < result_.configurations.size(); ++which) {
-    ConfigurationResult& result = result_.configurations[which];
-    result.bias = test_bias(result.together, result_.reference(which).estimates);
-    result_.tests += result.bias.tests();
-  }
-  result_.level = settings_.level;
-  result_.threshold = family_wise_threshold(settings_.level, result_.tests);
-  for (ConfigurationResult& result : result_.configurations) {
-    result.verdict = result.bias.verdict(result_.threshold);
-  }
-  find_efficiencies();
-}
-
-void Experiment::find_efficiencies() {
-  const ConfigurationResult& baseline = result_.configurations[result_.baseline];
-  for (ConfigurationResult& result : result_.configurations) {
-    result.efficiency =
-        result.efficiency_over(baseline, [](const ComparisonRun& run) { return run.cpu_seconds; });
-  }
-}
-
-}  // namespace
-
-bool ConfigurationResult::has_overflows() const {
-  return std::any_of(runs.begin(), runs.end(),
-                     [](const ComparisonRun& run) { return run.overflows > 0; });
-}
-
-bool ConfigurationResult::is_trusted() const {
-  return verdict != BiasVerdict::kFails && !bias.is_heavy_tailed && !is_biased && !has_overflows();
-}
-
-std::optional<Interval> ConfigurationResult::efficiency_over(
-    const ConfigurationResult& baseline,
-    const std::function<double(const ComparisonRun&)>& cost) const {
-  std::vector<double> ratios;
-  for (std::size_t repeat = 0; repeat < runs.size(); ++repeat) {
-    const ComparisonRun& mine = runs[repeat];
-    const ComparisonRun& theirs = baseline.runs[repeat];
-    const bool positive = mine.error.mse > 0 && theirs.error.mse > 0;
-    ratios.push_back(positive ? theirs.error.mse * cost(theirs) / (mine.error.mse * cost(mine))
-                              : 0);
-  }
-  return geometric_interval(ratios);
-}
-
-Interval ConfigurationResult::over_runs(
-    const std::function<double(const ComparisonRun&)>& figure) const {
-  std::vector<double> values;
-  for (const ComparisonRun& run : runs) values.push_back(figure(run));
-  return mean_interval(values);
-}
-
-Comparison compare(const RenderTarget& target, const ComparisonSettings& settings,
-                   const ComparisonProgressFunction& progress) {
+void check_settings(const ComparisonSettings& settings) {
   if (settings.configurations.empty()) fail("nothing to compare: no methods are given");
   if (settings.repeats < 1) fail("nothing to compare: {}", counted(settings.repeats, "repeat"));
   if (settings.time <= 0 && settings.samples == 0) {
@@ -354,7 +317,20 @@ Comparison compare(const RenderTarget& target, const ComparisonSettings& setting
     fail("{} for {}: each needs two at least, to know its variance",
          counted(settings.samples, "sample"), counted(settings.repeats, "repeat"));
   }
+}
+
+}  // namespace
+
+Comparison compare(const RenderTarget& target, const ComparisonSettings& settings,
+                   const ComparisonProgressFunction& progress) {
+  check_settings(settings);
   return Experiment(target, settings, progress).run();
+}
+
+std::vector<Reference> references_of(const RenderTarget& target, const ComparisonSettings& settings,
+                                     const ComparisonProgressFunction& progress) {
+  check_settings(settings);
+  return Experiment(target, settings, progress).references();
 }
 
 }  // namespace freepath

@@ -26,11 +26,16 @@ struct ComparisonSettings {
   uint32_t samples = 0;
   /// Runs methods that refuse stochastic interpolation with trilinear one, whose field is the same.
   bool may_interpolate = false;
-  int repeats = 5;      ///< Independent runs of each configuration.
+  int repeats = 5;  ///< Independent runs of each configuration.
+  /// Repeats to run, a part that merge_rounds() puts together with others: from first_round to
+  /// before end_round, 0: to the last.
+  int first_round = 0, end_round = 0;
   uint64_t seed = 0;    ///< Seed of all runs; each gets one of its own.
   double level = 1e-3;  ///< Probability that any of all bias tests raises a false alarm.
   RenderSettings render;
   ReferencePlan reference;
+  /// References that references_of() has returned; empty: they are made by the plan.
+  std::vector<Reference> references = {};
 };
 
 /// Error of a run as it went on.
@@ -123,5 +128,16 @@ class Interrupted : public Error {
 ///   naming them; as RenderTarget::render; Interrupted
 Comparison compare(const RenderTarget& target, const ComparisonSettings& settings,
                    const ComparisonProgressFunction& progress = {});
+
+/// References of a comparison alone, one for each field that its interpolations make.
+/// @throws Error as compare()
+std::vector<Reference> references_of(const RenderTarget& target, const ComparisonSettings& settings,
+                                     const ComparisonProgressFunction& progress = {});
+
+/// Comparison of all rounds, of others that have run some each, with the same settings and
+/// references: that of one go, but for times, where each has run one round.
+/// @param rounds at least one, in the order of their rounds
+/// @throws Error where they are of other configurations
+Comparison merge_rounds(std::vector<Comparison> rounds);
 
 }  // namespace freepath

@@ -2,8 +2,10 @@
 /// @file What estimators are compared on.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "freepath/base/rgb_primaries.h"
 #include "freepath/paths/renderer.h"
@@ -26,6 +28,10 @@ struct RenderTarget {
   std::function<RenderResult(const RenderSettings&, const ProgressFunction&)> render_reference = {};
 };
 
+/// Target whose pictures are those of a scene, in the size of its camera; a name and a digest are
+/// left to the caller. Making a reference changes how the scene's samples are spread meanwhile.
+RenderTarget target_of(const std::shared_ptr<PathScene>& scene, ColorMode color);
+
 /// How to estimate a picture.
 struct Configuration {
   std::string tracker = "delta", transmittance = "ratio";  ///< Methods with their options.
@@ -33,6 +39,19 @@ struct Configuration {
 
   bool operator==(const Configuration&) const = default;
 };
+
+/// Trackers that are compared where nothing is said, separated by commas.
+inline constexpr const char* kComparedTrackers =
+    "delta,weighted-delta,decomposition,weighted-decomposition,spectral-decomposition";
+
+/// All combinations of methods and interpolations.
+/// @param trackers as parse_method() has them
+/// @param automatic tracker that `auto` stands for
+/// @throws Error for a combination that is there twice
+std::vector<Configuration> all_configurations(const std::vector<std::string>& trackers,
+                                              const std::vector<std::string>& transmittances,
+                                              const std::vector<Interpolation>& interpolations,
+                                              const std::string& automatic);
 
 /// Whether one of its methods says that it is biased.
 bool is_biased(const Configuration& configuration);

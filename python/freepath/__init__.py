@@ -5,11 +5,14 @@ units, those of a field's transform, and are written as metres; coefficients are
 Errors are `freepath.Error`, a ValueError, and say what is wrong, where, and what to do.
 """
 
-from ._field import DensityFunction, Field
+from ._compare import Comparison, compare
+from ._field import Field
 from ._film import Film, merge
 from ._flux import Fluxes, FluxMap, SlabFluxes, flux, slab
 from ._freepath import Error, max_channels, simd
 from ._freepath import version as __version__
+from ._functions import DensityFunction
+from ._lab import Lab, lab, lab_settings
 from ._medium import Component, Medium
 from ._methods import Method, Option, PhaseFunction, estimators, phase_functions, trackers
 from ._render import Picture, Progress, radiance, render
@@ -17,6 +20,7 @@ from ._sampling import Estimate, Event, FreePaths, sample_free_paths, transmitta
 from ._scene import Scene
 
 __all__ = [
+    "Comparison",
     "Component",
     "DensityFunction",
     "Error",
@@ -27,6 +31,7 @@ __all__ = [
     "FluxMap",
     "Fluxes",
     "FreePaths",
+    "Lab",
     "Medium",
     "Method",
     "Option",
@@ -36,8 +41,11 @@ __all__ = [
     "Scene",
     "SlabFluxes",
     "__version__",
+    "compare",
     "estimators",
     "flux",
+    "lab",
+    "lab_settings",
     "max_channels",
     "merge",
     "phase_functions",

@@ -217,8 +217,8 @@ def flux(
     elif ground_height is not None:
         raise Error("ground_height is that of a ground: give its albedo too")
     options.ground_height = None if ground_height is None else float(ground_height)
-    options.sun = None if sun is None else _angles(sun, "sun", 0, 90)
-    options.views = [_angles(view, "views", 0, 180) for view in views]
+    options.sun = None if sun is None else angles(sun, "sun", 0, 90)
+    options.views = [angles(view, "views", 0, 180) for view in views]
     options.paths = as_count(paths, "paths", 1, 10**15)
     options.threads = threads_of(threads)
     result = _freepath.flux(as_medium(medium)._core, options)
@@ -236,11 +236,16 @@ def _for_layers(values: Any, what: str, count: int) -> NDArray[Any]:
     return np.broadcast_to(array, (count,))
 
 
-def _angles(angles: Any, what: str, least: float, most: float) -> tuple[float, float]:
+def angles(pair: Any, what: str, least: float, most: float) -> tuple[float, float]:
+    """Return zenith angle and azimuth [degrees].
+
+    Raises:
+        Error: for anything else, and a zenith angle out of range.
+    """
     try:
-        zenith, azimuth = (float(angle) for angle in angles)
+        zenith, azimuth = (float(angle) for angle in pair)
     except (TypeError, ValueError):
-        raise Error(f"{what}: {angles!r} is not a zenith angle and an azimuth") from None
+        raise Error(f"{what}: {pair!r} is not a zenith angle and an azimuth") from None
     is_level = abs(zenith - 90) < 1e-3
     if not least <= zenith <= most or is_level or not np.isfinite(azimuth):
         raise Error(

@@ -27,13 +27,29 @@ class Component:
         sigma_s: scattering per unit of density [1/m].
         phase: a `PhaseFunction`, the text of one, or the mean cosine g of Henyey-Greenstein's.
         emission: L_e, radiance of the medium were it opaque; the source term is
-            sigma_a · density · L_e.
+            sigma_a · density · L_e. With temperatures, what multiplies the radiance of their black
+            bodies. None: 0, and with temperatures 1.
+        temperature: field of temperatures, of which the medium glows as black bodies do, the
+            spectrum of each scaled to a maximum of 1 as in pbrt. Such a medium has the channels R,
+            G and B.
+        temperature_scale: what values of the field are multiplied by to be kelvins [K].
+        temperature_offset: value of the field at 0 K, taken off first.
 
     Raises:
-        Error: for coefficients that are negative or not finite, and an unknown phase function.
+        Error: for coefficients that are negative or not finite, an unknown phase function, and
+            temperatures whose scale is none.
     """
 
-    __slots__ = ("field", "sigma_a", "sigma_s", "emission", "phase")
+    __slots__ = (
+        "emission",
+        "field",
+        "phase",
+        "sigma_a",
+        "sigma_s",
+        "temperature",
+        "temperature_offset",
+        "temperature_scale",
+    )
 
     def __init__(
         self,
@@ -42,23 +58,52 @@ class Component:
         sigma_a: ArrayLike = 0.0,
         sigma_s: ArrayLike = 1.0,
         phase: PhaseFunction | str | float = "isotropic",
-        emission: ArrayLike = 0.0,
+        emission: ArrayLike | None = None,
+        temperature: Field | None = None,
+        temperature_scale: float = 1.0,
+        temperature_offset: float = 0.0,
     ) -> None:
         if not isinstance(field, Field):
             raise TypeError(f"field: {type(field).__name__} is no Field; see Field.from_array")
         self.field = field
         self.sigma_a = as_channels(sigma_a, "sigma_a")
         self.sigma_s = as_channels(sigma_s, "sigma_s")
+        if temperature is not None and not isinstance(temperature, Field):
+            raise TypeError(f"temperature: {type(temperature).__name__} is no Field")
+        if not (np.isfinite([temperature_scale, temperature_offset]).all() and temperature_scale > 0):
+            raise Error(
+                f"temperature_scale {temperature_scale} and temperature_offset {temperature_offset}: "
+                "they are finite, and the scale is positive"
+            )
+        self.temperature = temperature
+        self.temperature_scale = float(temperature_scale)
+        self.temperature_offset = float(temperature_offset)
+        if emission is None:
+            emission = 0.0 if temperature is None else 1.0
         self.emission = as_channels(emission, "emission")
         self.phase = as_phase_function(phase)
 
     def __reduce__(self) -> Any:
-        return _component, (self.field, self.sigma_a, self.sigma_s, self.phase, self.emission)
+        return _component, (
+            self.field,
+            self.sigma_a,
+            self.sigma_s,
+            self.phase,
+            self.emission,
+            self._thermal(),
+        )
+
+    def _thermal(self) -> tuple[Field, float, float] | None:
+        """Temperatures with their scale and offset."""
+        if self.temperature is None:
+            return None
+        return self.temperature, self.temperature_scale, self.temperature_offset
 
     def __repr__(self) -> str:
         return (
             f"freepath.Component({self.field!r}, sigma_a={self.sigma_a}, sigma_s={self.sigma_s}, "
-            f"phase={self.phase.text!r}, emission={self.emission})"
+            f"phase={self.phase.text!r}, emission={self.emission}"
+            + (f", temperature={self.temperature!r})" if self.temperature else ")")
         )
 
 
@@ -89,6 +134,7 @@ class Medium:
                 component.field._core,
                 *(_repeated(v, count) for v in _coefficients(component)),
                 component.phase._core,
+                _thermal_core(component),
             )
             for component in self.components
         ]
@@ -116,7 +162,8 @@ class Medium:
         """Text that tells it from others."""
         parts = [
             [field._digest(), sigma_a, sigma_s, phase._digest(), emission]
-            for field, sigma_a, sigma_s, phase, emission in self._parts
+            + ([thermal[0]._digest(), *thermal[1:]] if thermal else [])
+            for field, sigma_a, sigma_s, phase, emission, thermal in self._parts
         ]
         return repr([parts, self._super_voxel])
 
@@ -127,9 +174,26 @@ class Medium:
         return f"freepath.Medium({list(self.components)!r})"
 
 
-def _component(field: Field, sigma_a: Any, sigma_s: Any, phase: Any, emission: Any) -> Component:
+def _component(
+    field: Field, sigma_a: Any, sigma_s: Any, phase: Any, emission: Any, thermal: Any
+) -> Component:
     """Component of what pickling has made of it."""
-    return Component(field, sigma_a=sigma_a, sigma_s=sigma_s, phase=phase, emission=emission)
+    temperature, scale, offset = thermal or (None, 1.0, 0.0)
+    return Component(
+        field,
+        sigma_a=sigma_a,
+        sigma_s=sigma_s,
+        phase=phase,
+        emission=emission,
+        temperature=temperature,
+        temperature_scale=scale,
+        temperature_offset=offset,
+    )
+
+
+def _thermal_core(component: Component) -> Any:
+    thermal = component._thermal()
+    return thermal and (thermal[0]._core, *thermal[1:])
 
 
 def _medium(parts: tuple[Any, ...], super_voxel: int) -> Medium:
@@ -169,6 +233,10 @@ def _channel_count(components: tuple[Component, ...]) -> int:
             "each, or one number for all"
         )
     count = counts.pop() if counts else 1
+    if any(component.temperature for component in components):
+        if count not in (1, 3):
+            raise Error(f"coefficients have {count} channels; black bodies glow in R, G and B")
+        count = 3
     if count > _freepath.max_channels:
         raise Error(
             f"coefficients have {count} channels; a path carries {_freepath.max_channels} at most"

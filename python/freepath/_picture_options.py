@@ -37,6 +37,7 @@ def picture_options(
     wavelengths: int = 4,
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
+    adaptive: bool = True,
     threads: int = 0,
     simd: str = "best",
 ) -> _freepath.RenderOptions:
@@ -50,6 +51,7 @@ def picture_options(
         max_scatterings, wavelengths, shadow_roulette, near_light_lines, threads, simd,
     )  # fmt: skip
     options.time_limit = _seconds(time)
+    options.adaptive = bool(adaptive)
     if noise is not None:
         if not 1e-6 <= noise <= 1:
             raise Error(f"noise: {noise!r} is not between 1e-6 and 1")
@@ -87,6 +89,7 @@ def facts_of(scene: Scene, options: _freepath.RenderOptions) -> Facts:
         ("wavelengths", str(options.wavelengths)),
         ("shadow_roulette", str(options.shadow_roulette)),
         ("near_light_lines", str(options.near_light_lines)),
+        ("adaptive", str(options.adaptive)),
     ]
 
 

@@ -155,6 +155,7 @@ def render(
     wavelengths: int = 4,
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
+    adaptive: bool = True,
     progress: Callable[[Progress], Any] | bool | None = None,
     threads: int = 0,
     simd: str = "best",
@@ -190,6 +191,8 @@ def render(
         shadow_roulette: whether shadow rays that bring little are cast by Russian roulette.
         near_light_lines: whether light of lights in or near media is found along lines that pass
             them, so that the variance has an end; else at scatterings alone.
+        adaptive: whether pixels that are noisier take more samples, by a pilot: spp is their mean
+            then. Not with a time below 20 s.
         progress: called some times a second with a `Progress`, by the thread that called `render`;
             False ends the rendering soon, and what there is is returned. True: shows it on standard
             error, in Jupyter with a picture that grows.
@@ -211,7 +214,7 @@ def render(
         layers=layers, crop=crop, tile=tile, tracker=tracker, estimator=estimator,
         interpolation=interpolation, absorption=absorption, emission=emission,
         max_scatterings=max_scatterings, wavelengths=wavelengths, shadow_roulette=shadow_roulette,
-        near_light_lines=near_light_lines, threads=threads, simd=simd,
+        near_light_lines=near_light_lines, adaptive=adaptive, threads=threads, simd=simd,
     )  # fmt: skip
     shown: Any = None
     if progress is True:

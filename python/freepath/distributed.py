@@ -1,4 +1,4 @@
-"""Pictures on a cluster, by Dask.
+"""Pictures, comparisons and sweeps on a cluster, by Dask.
 
 Every `dask.distributed.Client` will do: of a LocalCluster, of dask-jobqueue on Slurm, of Kubernetes.
 It is an optional part, `pip install freepath[distributed]`, which workers need too.
@@ -7,32 +7,27 @@ It is an optional part, `pip install freepath[distributed]`, which workers need 
 from __future__ import annotations
 
 import inspect
-import pickle
-import threading
-import warnings
-from collections import OrderedDict
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
 from . import _freepath
 from ._arrays import as_count
+from ._cluster import Crew, Sent, built, check_facts, check_version
+from ._compare import Comparison, compare_options, named
+from ._compare import compare as compare_here
+from ._field import Field
 from ._film import Film, merge
-from ._freepath import Error, version
+from ._flux import Fluxes, angles, flux
+from ._freepath import version
+from ._medium import Component, Medium, as_medium
 from ._picture_options import picture_options
 from ._render import Picture, checked, film_of_part
 from ._sampling import threads_of
 from ._scene import Scene
 
-__all__ = ["render"]
-
-_PARTS_OF_A_THREAD = 4
-"""Parts for each thread of the cluster: the last ones to end keep others waiting for less."""
-_PARTS_OF_NO_WORKERS = 64
-"""Parts where there are no workers yet."""
-_SCENES_KEPT = 2
-"""Scenes that a worker keeps built."""
+__all__ = ["compare", "flux_sweep", "render"]
 
 
 def render(
@@ -78,25 +73,20 @@ def render(
         distributed.KilledWorker: where a task has ended several workers, for want of memory perhaps.
         Exception: whatever `on_result` raises; what is not rendered yet is cancelled then.
     """
-    dask = _dask()
-    if not isinstance(client, dask.Client):
-        raise TypeError(f"client: {type(client).__name__} is no dask.distributed.Client")
-    if client.asynchronous:
-        raise Error("client: is an asynchronous one; give one that waits, Client(...)")
-    _check_options(how)
+    crew = Crew.of(client, retries)
+    _check_options(how, picture_options, "render", ("time", "samples", "tile", "progress"))
     how["threads"] = threads_of(threads)
-    retries = as_count(retries, "retries", 0, 1000)
     if parts is not None:
         parts = as_count(parts, "parts", 1, 2**20)
     # Errors of options are told before anything is sent.
     options = picture_options(scene, spp=spp, noise=noise, **how)
     samples = _freepath.settled_samples(scene._core, options)
-    crew = _Crew(dask, client, _send(client, scene), dict(scene._facts()), retries)
-    parts = parts or _standard_parts(client)
+    films_of = _Filming(crew, _send_scene(crew, scene), dict(scene._facts()))
+    parts = parts or crew.standard_parts()
     if noise is not None:
-        samples = _planned_samples(crew, scene, options, {**how, "layers": "none"}, parts)
+        samples = _planned_samples(films_of, scene, options, {**how, "layers": "none"}, parts)
     merged = _Merged()
-    with closing(crew.films(_ranges(0, samples, parts), how)) as films:
+    with closing(films_of.ranges(_ranges(0, samples, parts), how)) as films:
         for film in films:
             merged.add(film)
             if merged.samples == samples or on_result is None:
@@ -106,30 +96,139 @@ def render(
     return checked(merged.film().picture())
 
 
-def _dask() -> Any:
-    try:
-        import distributed
-    except ImportError:
-        raise Error(
-            "freepath.distributed works on Dask, which is not installed: "
-            "pip install 'freepath[distributed]'"
-        ) from None
-    return distributed
+def compare(
+    scene: Scene,
+    client: Any,
+    *,
+    on_result: Callable[[Comparison], Any] | None = None,
+    retries: int = 3,
+    threads: int = 1,
+    **how: Any,
+) -> Comparison:
+    """Measure methods against each other on a cluster: each task a round of all of them.
+
+    The numbers are those of `freepath.compare` in one process, but for times, if samples are given
+    and not times. A round runs all methods on one worker, so that what slows that down meets all
+    alike. The reference is made by one task before.
+
+    Args:
+        scene: what to render; it is sent as `render` does.
+        client: `dask.distributed.Client` of the cluster.
+        on_result: called with the comparison so far whenever a round but the last has come. False
+            ends it, and the comparison so far is returned.
+        retries: how often a task that failed is tried again.
+        threads: of a task. CPU times are those of the worker's whole process: where it works on
+            several tasks at a time, efficiencies say little.
+        **how: trackers, estimators, spp, repeats, reference_spp and others, as `freepath.compare`
+            has them, but for cache and progress.
+
+    Returns:
+        The comparison.
+
+    Raises:
+        Error: as `freepath.compare` and `render`.
+        Exception: whatever `on_result` raises; what is not run yet is cancelled then.
+    """
+    crew = Crew.of(client, retries)
+    _check_options(how, compare_here, "compare", ("scene", "cache", "progress"))
+    how["threads"] = threads_of(threads)
+    render_how, options = compare_options(scene, **how)
+    _freepath.check_comparison(scene._core, render_how, options)
+    facts = dict(scene._facts())
+    sent = _send_scene(crew, scene)
+    references: Any
+    if options.reference:  # a file that workers need not have
+        made = _freepath.references(scene._core, render_how, options, None)
+        references = crew.submit(_itself, _freepath.references_bytes(made))
+        del how["reference"]
+    else:
+        references = crew.submit(_references_part, sent, how)
+    rounds: dict[int, Any] = {}
+
+    def so_far() -> Comparison:
+        ordered = [rounds[number] for number in sorted(rounds)]
+        return named(_freepath.merge_rounds(ordered), scene, render_how)
+
+    tasks = crew.results(
+        _round_part, range(options.repeats), scene=sent, references=references, how=how
+    )
+    with closing(tasks) as results:
+        for number, (theirs, data) in results:
+            check_facts(theirs, facts)
+            rounds[number] = _freepath.comparison_of_bytes(data)
+            if len(rounds) == options.repeats or on_result is None:
+                continue
+            if on_result(so_far()) is False:
+                break
+    return so_far()
 
 
-def _check_options(how: dict[str, Any]) -> None:
-    """Refuse what `render` doesn't know, and what can't be said of parts of a picture."""
-    known = inspect.signature(picture_options).parameters
-    for name in how:
-        if name in ("time", "samples", "tile", "progress"):
-            raise TypeError(f"{name}: not on a cluster; give spp or noise, and on_result")
-        if name not in known:
-            raise TypeError(f"render() has no argument {name!r}")
+def flux_sweep(
+    medium: Medium | Component | Field | Iterable[Component],
+    client: Any,
+    suns: Iterable[tuple[float, float]],
+    *,
+    on_result: Callable[[int, Fluxes], Any] | None = None,
+    retries: int = 3,
+    threads: int = 1,
+    **how: Any,
+) -> list[Fluxes | None]:
+    """Trace light from many suns through a medium on a cluster: each task one sun.
+
+    The fluxes have the bits of `freepath.flux(medium, sun=sun, **how)` in one process. The medium
+    is sent once to each worker.
+
+    Args:
+        medium: what `freepath.flux` takes.
+        client: `dask.distributed.Client` of the cluster.
+        suns: zenith angle and azimuth of each [degrees].
+        on_result: called with the number of a sun and its fluxes whenever they have come. False
+            ends the sweep.
+        retries: how often a task that failed is tried again.
+        threads: of a task.
+        **how: columns, ground, views, paths, seed and others, as `freepath.flux` has them.
+
+    Returns:
+        The fluxes of each sun, in the order of the suns; None of those that an `on_result` that
+        ended the sweep has left out.
+
+    Raises:
+        Error: as `freepath.flux`, before anything is sent; as `render`.
+        Exception: whatever `on_result` raises; what is not traced yet is cancelled then.
+    """
+    crew = Crew.of(client, retries)
+    _check_options(how, flux, "flux_sweep", ("medium", "sun"))
+    how["threads"] = threads_of(threads)
+    suns = [angles(sun, "suns", 0, 90) for sun in suns]
+    medium = as_medium(medium)
+    if not suns:
+        return []
+    flux(medium, sun=suns[0], **{**how, "paths": 1})  # tells errors before anything is sent
+    digest = medium._digest()
+    fluxes: list[Fluxes | None] = [None] * len(suns)
+    tasks = crew.results(_flux_part, suns, medium=crew.send(medium, digest), how=how)
+    with closing(tasks) as results:
+        for number, (their_version, their_digest, result) in results:
+            check_version(their_version)
+            check_facts({"the medium": their_digest}, {"the medium": digest})
+            fluxes[number] = result
+            if on_result is not None and on_result(number, result) is False:
+                break
+    return fluxes
 
 
-def _standard_parts(client: Any) -> int:
-    threads = sum(client.nthreads().values())
-    return _PARTS_OF_A_THREAD * threads if threads else _PARTS_OF_NO_WORKERS
+def _check_options(
+    how: dict[str, Any], function: Callable[..., Any], name: str, not_here: tuple[str, ...]
+) -> None:
+    """Refuse what a function doesn't know, and what can't be said on a cluster."""
+    known = inspect.signature(function).parameters
+    for option in how:
+        if option in ("time", "samples", "tile", "progress") and option in not_here:
+            raise TypeError(f"{option}: not on a cluster; give spp or noise, and on_result")
+        if option in not_here:
+            raise TypeError(f"{option}: not on a cluster")
+        if option not in known:
+            raise TypeError(f"{name}() has no argument {option!r}")
 
 
 def _ranges(first: int, end: int, parts: int) -> list[tuple[int, int]]:
@@ -140,41 +239,38 @@ def _ranges(first: int, end: int, parts: int) -> list[tuple[int, int]]:
 
 
 @dataclass(frozen=True)
-class _Crew:
+class _Filming:
     """Workers that have a scene, or will have it.
 
     Attributes:
-        dask: the module `distributed`.
-        client: of the cluster.
+        crew: the workers.
         scene: future of the scene.
         facts: what pictures of it depend on.
-        retries: of a task that fails.
     """
 
-    dask: Any
-    client: Any
+    crew: Crew
     scene: Any
     facts: dict[str, str]
-    retries: int
 
-    def films(self, ranges: list[tuple[int, int]], how: dict[str, Any]) -> Generator[Film, None, None]:
-        """Render ranges of samples, and yield their films in the order in which they come.
-
-        What is not rendered when the iterator is closed is cancelled.
-        """
-        futures = self.client.map(
-            _render_part, ranges, scene=self.scene, how=how, pure=False, retries=self.retries
-        )
-        try:
-            for future, data in self.dask.as_completed(futures, with_results=True):
-                future.release()
-                yield _same_scene(Film.from_bytes(data), self.facts)
-        finally:
-            self.client.cancel([future for future in futures if not future.done()])
+    def ranges(
+        self, ranges: list[tuple[int, int]], how: dict[str, Any]
+    ) -> Generator[Film, None, None]:
+        """Render ranges of samples, and yield their films in the order in which they come."""
+        tasks = self.crew.results(_render_part, ranges, scene=self.scene, how=how)
+        with closing(tasks) as results:
+            for _, data in results:
+                film = Film.from_bytes(data)
+                check_version(film._core.version)
+                check_facts(film.facts, self.facts)
+                yield film
 
 
 def _planned_samples(
-    crew: _Crew, scene: Scene, options: _freepath.RenderOptions, how: dict[str, Any], parts: int
+    films_of: _Filming,
+    scene: Scene,
+    options: _freepath.RenderOptions,
+    how: dict[str, Any],
+    parts: int,
 ) -> int:
     """Return the number of samples that a noise takes, as `render` plans it in one process."""
     seed, end, most = _freepath.first_pilot(scene._core, options)
@@ -183,32 +279,12 @@ def _planned_samples(
     first = 0
     pilot = _Merged()
     while True:
-        for film in crew.films(_ranges(first, end, parts), {**how, "seed": seed}):
+        for film in films_of.ranges(_ranges(first, end, parts), {**how, "seed": seed}):
             pilot.add(film)
         samples, is_known = _freepath.samples_by_pilot(pilot.film()._core, noise, most)
         if is_known:
             return samples
         first, end = end, 2 * end
-
-
-def _same_scene(film: Film, facts: dict[str, str]) -> Film:
-    """Return a film of a worker whose scene is that of the client.
-
-    Raises:
-        Error: where it isn't, naming what differs; where the worker has another freepath.
-    """
-    if film._core.version != version:
-        raise Error(
-            f"a worker has freepath {film._core.version} and not {version}; give workers the same"
-        )
-    theirs = film.facts
-    for name, value in facts.items():
-        if theirs.get(name) != value:
-            raise Error(
-                f"a worker has rendered another scene: {name} is {theirs.get(name, 'not there')} "
-                f"and not {value}; give workers the same files"
-            )
-    return film
 
 
 class _Merged:
@@ -242,50 +318,46 @@ class _Merged:
             yield self._films[first]
 
 
-@dataclass(frozen=True)
-class _SentScene:
-    """A scene on its way: built by those who need it, not by those who pass it on.
-
-    Attributes:
-        digest: its name; the same scene, the same name.
-        data: the scene, pickled.
-    """
-
-    digest: str
-    data: bytes
+def _send_scene(crew: Crew, scene: Scene) -> Any:
+    return crew.send(scene, repr(scene._facts()))
 
 
-def _send(client: Any, scene: Scene) -> Any:
-    """Give the scene to the cluster as the result of a task, which can be repeated if it is lost."""
-    data = pickle.dumps(scene, protocol=pickle.HIGHEST_PROTOCOL)
-    sent = _SentScene(repr(scene._facts()), data)
-    with warnings.catch_warnings():
-        # Dask advises to scatter what is large. What is scattered is lost with its workers.
-        warnings.filterwarnings("ignore", message="Sending large graph")
-        return client.submit(_itself, sent, pure=False)
+# What runs on workers.
 
 
-def _itself(scene: _SentScene) -> _SentScene:
-    return scene
+def _itself(data: bytes) -> bytes:
+    return data
 
 
-_built: OrderedDict[str, Scene] = OrderedDict()
-_building = threading.Lock()
+def _render_part(samples: tuple[int, int], scene: Sent, how: dict[str, Any]) -> bytes:
+    """Return the film of some samples."""
+    return film_of_part(built(scene), samples=samples, **how).to_bytes()
 
 
-def _scene_of(sent: _SentScene) -> Scene:
-    """Return the scene, built by this process at most once while it is in use."""
-    with _building:
-        scene = _built.get(sent.digest)
-        if scene is None:
-            scene = pickle.loads(sent.data)
-            _built[sent.digest] = scene
-        _built.move_to_end(sent.digest)
-        while len(_built) > _SCENES_KEPT:
-            _built.popitem(last=False)
-        return scene
+def _references_part(scene: Sent, how: dict[str, Any]) -> bytes:
+    """Return the references of a comparison."""
+    own: Scene = built(scene)
+    render_how, options = compare_options(own, **how)
+    return _freepath.references_bytes(
+        _freepath.references(own._core, render_how, options, None)
+    )
 
 
-def _render_part(samples: tuple[int, int], scene: _SentScene, how: dict[str, Any]) -> bytes:
-    """Return the film of some samples; runs on a worker."""
-    return film_of_part(_scene_of(scene), samples=samples, **how).to_bytes()
+def _round_part(
+    number: int, scene: Sent, references: bytes, how: dict[str, Any]
+) -> tuple[dict[str, str], bytes]:
+    """Return what the scene depends on here, and a round of a comparison."""
+    own: Scene = built(scene)
+    render_how, options = compare_options(own, **how)
+    options.references = _freepath.references_of_bytes(references)
+    options.first_round, options.end_round = number, number + 1
+    core = _freepath.compare(own._core, render_how, options, None)
+    return dict(own._facts()), _freepath.comparison_bytes(core)
+
+
+def _flux_part(
+    sun: tuple[float, float], medium: Sent, how: dict[str, Any]
+) -> tuple[str, str, Fluxes]:
+    """Return version and digest as they are here, and the fluxes of a sun."""
+    own: Medium = built(medium)
+    return version, own._digest(), flux(own, sun=sun, **how)

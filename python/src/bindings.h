@@ -14,7 +14,11 @@ void bind_sampling(nanobind::module_& module);
 void bind_scenes(nanobind::module_& module);
 void bind_films(nanobind::module_& module);
 void bind_pictures(nanobind::module_& module);
+void bind_render_options(nanobind::module_& module);
 void bind_rendering(nanobind::module_& module);
 void bind_fluxes(nanobind::module_& module);
+void bind_comparisons(nanobind::module_& module);
+void bind_comparison_states(nanobind::module_& module);
+void bind_laboratory(nanobind::module_& module);
 
 }  // namespace freepath::python

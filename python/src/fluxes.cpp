@@ -112,6 +112,9 @@ nb::tuple map_to_python(const FluxMap& map, const std::array<uint32_t, 2>& count
 }
 
 nb::dict flux(const PythonMedium& medium, const FluxOptions& options) {
+  if (medium.channels.emits()) {
+    fail("what a medium emits is no part of these fluxes: leave out emission and temperature");
+  }
   const UpAxis up = parse_up_axis(options.up);
   FluxSettings settings;
   settings.paths = options.paths;

@@ -38,6 +38,7 @@ MediumChannels PythonMedium::selected(const std::vector<int>& numbers) const {
       to.sigma_a[i] = from.sigma_a[numbers[i]];
       to.sigma_s[i] = from.sigma_s[numbers[i]];
       to.emission[i] = from.emission[numbers[i]];
+      to.radiance[i] = from.radiance[numbers[i]];
     }
   }
   return some;
@@ -54,10 +55,11 @@ VolumeMedium PythonMedium::as_volumes(const PeriodicSides& sides) const {
   }
   if (!sides.any()) {
     check_optical_depth(*medium);
-    return {.medium = medium};
+    return {.medium = medium, .temperatures = temperatures, .sides = {}};
   }
   std::vector<Volume> volumes;
-  for (const Component& component : medium->components()) {
+  for (std::size_t k = 0; k < medium->components().size(); ++k) {
+    const Component& component = medium->components()[k];
     if (component.density->function) {
       fail("'{}' is computed, and can't be repeated: bake it first", component.density->name);
     }
@@ -66,7 +68,14 @@ VolumeMedium PythonMedium::as_volumes(const PeriodicSides& sides) const {
     optics.sigma_s = component.sigma_s;
     optics.phase = component.phase;
     optics.emission = component.emission;
-    volumes.push_back({.densities = {*component.density}, .optics = std::move(optics)});
+    Volume& volume = volumes.emplace_back();
+    volume.densities = {*component.density};
+    volume.optics = std::move(optics);
+    if (const auto& temperature = temperatures[k]) {
+      volume.temperature = temperature->field;
+      volume.optics.temperature_scale = temperature->scale;
+      volume.optics.temperature_offset = temperature->offset;
+    }
   }
   return make_medium(std::move(volumes), super_voxel, sides);
 }
@@ -75,9 +84,11 @@ namespace {
 
 /// Values of a coefficient, one for each channel.
 using Values = std::vector<float>;
-/// Field, sigma_a, sigma_s, emission, phase function.
-using ComponentParts =
-    std::tuple<std::shared_ptr<const Field>, Values, Values, Values, const PhaseFunction*>;
+/// Field, with what its values are multiplied by to be kelvins, and the value at 0 K.
+using Temperature = std::tuple<std::shared_ptr<const Field>, double, double>;
+/// Field, sigma_a, sigma_s, emission, phase function, temperature.
+using ComponentParts = std::tuple<std::shared_ptr<const Field>, Values, Values, Values,
+                                  const PhaseFunction*, std::optional<Temperature>>;
 
 /// What stands for the values of any number of channels where R, G and B are wanted: bounds of
 /// super-voxels are chosen by the largest.
@@ -90,16 +101,29 @@ PythonMedium make_python_medium(const std::vector<ComponentParts>& parts, int su
   PythonMedium result;
   result.super_voxel = super_voxel;
   std::vector<Component> components;
-  for (const auto& [field, sigma_a, sigma_s, emission, phase] : parts) {
-    components.push_back({.density = field,
-                          .sigma_a = spectrum_of(sigma_a),
-                          .sigma_s = spectrum_of(sigma_s),
-                          .phase = *phase,
-                          .emission = spectrum_of(emission)});
+  for (const auto& [field, sigma_a, sigma_s, emission, phase, temperature] : parts) {
+    Component& component = components.emplace_back();
+    component.density = field;
+    component.sigma_a = spectrum_of(sigma_a);
+    component.sigma_s = spectrum_of(sigma_s);
+    component.phase = *phase;
+    component.emission = spectrum_of(emission);
     ComponentChannels& channels = result.channels.components.emplace_back();
     std::copy(sigma_a.begin(), sigma_a.end(), channels.sigma_a.begin());
     std::copy(sigma_s.begin(), sigma_s.end(), channels.sigma_s.begin());
     std::copy(emission.begin(), emission.end(), channels.emission.begin());
+    std::optional<TemperatureEmission>& thermal = result.temperatures.emplace_back();
+    if (temperature) {
+      const auto& [temperatures, scale, offset] = *temperature;
+      if (temperatures->function) {
+        fail("'{}' is computed, and can't be a temperature: bake it first", temperatures->name);
+      }
+      if (sigma_a.size() != kChannels) fail("black bodies glow in R, G and B: give three channels");
+      thermal = {temperatures, scale, offset};
+      set_thermal_emission(*thermal, component.emission, component);
+      std::copy(component.radiance.begin(), component.radiance.end(), channels.radiance.begin());
+      for (int c = 0; c < kChannels; ++c) channels.emission[c] = component.emission[c];
+    }
     result.channels.count = static_cast<int>(sigma_a.size());
   }
   result.medium = result_interruptibly([&](const std::atomic<bool>& /*stop*/) {

@@ -2,6 +2,7 @@
 /// @file A medium as Python holds it.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "freepath/media/medium.h"
@@ -14,6 +15,8 @@ namespace freepath::python {
 struct PythonMedium {
   std::shared_ptr<const Medium> medium;
   MediumChannels channels;
+  /// Temperatures of the components, in their order, where they glow as black bodies.
+  std::vector<std::optional<TemperatureEmission>> temperatures;
   int super_voxel = 0;  ///< As it was asked for.
 
   /// Whether its coefficients are one for all, or R, G and B, so that it can be rendered.

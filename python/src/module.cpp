@@ -85,6 +85,10 @@ NB_MODULE(_freepath, module) {
   python::bind_scenes(module);
   python::bind_films(module);
   python::bind_pictures(module);
+  python::bind_render_options(module);
   python::bind_rendering(module);
   python::bind_fluxes(module);
+  python::bind_comparisons(module);
+  python::bind_comparison_states(module);
+  python::bind_laboratory(module);
 }

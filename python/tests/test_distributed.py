@@ -10,6 +10,7 @@ import pytest
 import freepath as fp
 import freepath.distributed
 from test_films import TEXT, assert_same_bits, scene_around
+from test_studies import without_times
 
 distributed = pytest.importorskip("distributed")
 
@@ -77,7 +78,7 @@ def test_a_worker_whose_files_are_others_is_found_out(client, tmp_path):
 
 
 def test_a_worker_of_another_version_is_found_out(client, scene, monkeypatch):
-    monkeypatch.setattr(freepath.distributed, "version", "0.0.1")
+    monkeypatch.setattr(freepath._cluster, "version", "0.0.1")
     with pytest.raises(fp.Error, match="a worker has freepath .* and not 0.0.1"):
         freepath.distributed.render(scene, client, spp=2)
 
@@ -125,6 +126,72 @@ def test_what_can_not_be_is_told_before_anything_is_sent(client, scene, cloud):
     density = fp.DensityFunction(lambda p: p[:, 0], [0, 0, 0], [1, 1, 1], bounds=(0, 1))
     with pytest.raises(fp.Error, match="bake it first"):
         render(fp.Scene.around(density, size=(8, 6)), client)
+
+
+def test_a_sweep_of_suns_has_the_bits_of_one_process(cluster, client, cloud):
+    medium = fp.Component(cloud, sigma_s=0.8, sigma_a=0.1, phase=0.6)
+    suns = [(zenith, azimuth) for zenith in (0, 40, 70) for azimuth in (0, 90)]
+    how = {"paths": 4000, "seed": 2, "columns": (2, 5), "views": [(0, 0)], "ground": 0.2}
+    killed = []
+
+    def kill(number, fluxes):
+        busy = {address for address, tasks in client.processing().items() if tasks}
+        for worker in cluster.workers.values():
+            if not killed and worker.worker_address in busy:
+                os.kill(worker.pid, signal.SIGKILL)
+                killed.append(worker.pid)
+
+    swept = freepath.distributed.flux_sweep(medium, client, suns, on_result=kill, **how)
+    assert len(swept) == len(suns)
+    for sun, theirs in zip(suns, swept):
+        ours = fp.flux(medium, sun=sun, **how)
+        assert theirs.reflectance.all == ours.reflectance.all
+        for name in ("reflectance", "transmittance", "absorptance"):
+            one, other = getattr(theirs, name).columns, getattr(ours, name).columns
+            assert np.array_equal(one.mean, other.mean) and np.array_equal(one.error, other.error)
+        assert np.array_equal(theirs.radiances[0].columns.mean, ours.radiances[0].columns.mean)
+
+
+def test_a_sweep_is_ended_and_refused(client, cloud):
+    sweep = freepath.distributed.flux_sweep
+    some = sweep(cloud, client, [(z, 0) for z in range(0, 80, 5)], paths=100, on_result=lambda *_: False)
+    assert len(some) == 16 and sum(fluxes is not None for fluxes in some) == 1
+    assert sweep(cloud, client, []) == []
+    with pytest.raises(fp.Error, match="suns"):
+        sweep(cloud, client, [(0, 0), (95, 0)])
+    with pytest.raises(fp.Error, match="there is no method 'dleta'"):
+        sweep(cloud, client, [(0, 0)], tracker="dleta")
+    with pytest.raises(TypeError, match="sun: not on a cluster"):
+        sweep(cloud, client, [(0, 0)], sun=(0, 0))
+    with pytest.raises(TypeError, match=r"flux_sweep\(\) has no argument 'path'"):
+        sweep(cloud, client, [(0, 0)], path=3)
+
+
+def test_comparisons_have_the_numbers_of_one_process(client, scene):
+    how = {
+        "trackers": ["delta", "decomposition"], "spp": 16, "repeats": 4, "reference_spp": 32,
+        "seed": 5, "crop": (3, 2, 40, 30),
+    }  # fmt: skip
+    seen = []
+    found = freepath.distributed.compare(scene, client, on_result=seen.append, **how)
+    whole = fp.compare(scene, **how)
+    assert without_times(found.data) == without_times(whole.data)
+    assert [len(part.data["configurations"][0]["runs"]) for part in seen] == [1, 2, 3]
+    some = freepath.distributed.compare(scene, client, on_result=lambda part: False, **how)
+    assert len(some.runs) == 2
+
+
+def test_comparisons_measure_against_files_of_the_client(client, scene, tmp_path):
+    fp.render(scene, spp=32, seed=9, layers="variance").save(tmp_path / "reference.exr")
+    how = {"trackers": "delta", "spp": 8, "repeats": 2, "reference": tmp_path / "reference.exr"}
+    found = freepath.distributed.compare(scene, client, **how)
+    assert without_times(found.data) == without_times(fp.compare(scene, **how).data)
+    with pytest.raises(fp.Error, match="there is no method 'dleta'"):
+        freepath.distributed.compare(scene, client, trackers="dleta")
+    with pytest.raises(TypeError, match="cache: not on a cluster"):
+        freepath.distributed.compare(scene, client, cache=tmp_path)
+    with pytest.raises(TypeError, match=r"compare\(\) has no argument 'sp'"):
+        freepath.distributed.compare(scene, client, sp=3)
 
 
 def test_without_dask_the_error_says_what_to_install(monkeypatch, scene):

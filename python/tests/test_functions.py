@@ -5,12 +5,16 @@ import gc
 import math
 import weakref
 
-import numba
 import numpy as np
 import pytest
 from quadrature import z_score
 
 import freepath as fp
+
+try:
+    import numba
+except ImportError:
+    numba = None
 
 TAU = math.sqrt(math.pi) * math.erf(2)  # of exp(-x²) from -2 to 2
 
@@ -19,15 +23,40 @@ def gaussian(positions):
     return np.exp(-np.square(positions).sum(1))
 
 
-@numba.cfunc(
-    numba.types.void(
-        numba.types.CPointer(numba.float32), numba.types.CPointer(numba.float32), numba.types.intp
-    )
-)
-def compiled(positions, densities, n):
+def per_position(positions, densities, n):
     for i in range(n):
         x, y, z = positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]
         densities[i] = math.exp(-(x * x + y * y + z * z))
+
+
+def in_arrays(positions):
+    densities = np.empty(len(positions), np.float32)
+    for i in range(len(positions)):
+        x, y, z = positions[i]
+        densities[i] = math.exp(-(x * x + y * y + z * z))
+    return densities
+
+
+@pytest.fixture(scope="module")
+def compiled():
+    """A C function, by Numba."""
+    if numba is None:
+        pytest.skip("Numba is not installed")
+    floats = numba.types.CPointer(numba.float32)
+    return numba.cfunc(numba.types.void(floats, floats, numba.types.intp))(per_position)
+
+
+class Tensor:
+    """What has DLPack alone."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __dlpack__(self, **options):
+        return self._array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self._array.__dlpack_device__()
 
 
 def bounds(lower, upper):
@@ -38,15 +67,19 @@ def bounds(lower, upper):
 
 
 FUNCTIONS = {
-    "NumPy": (gaussian, 4000),
-    "numba": (compiled, 400_000),
-    "ctypes": (compiled.ctypes, 400_000),
+    "NumPy": (lambda compiled: gaussian, 4000),
+    "DLPack": (lambda compiled: lambda positions: Tensor(gaussian(positions)), 4000),
+    "numba.njit": (lambda compiled: numba.njit(in_arrays), 4000),
+    "numba.cfunc": (lambda compiled: compiled, 400_000),
+    "ctypes": (lambda compiled: compiled.ctypes, 400_000),
 }
 
 
-@pytest.mark.parametrize("function, samples", FUNCTIONS.values(), ids=FUNCTIONS.keys())
+@pytest.mark.parametrize("make, samples", FUNCTIONS.values(), ids=FUNCTIONS.keys())
 @pytest.mark.parametrize("known", [(0.0, 1.0), bounds], ids=["one pair", "bounds by place"])
-def test_transmittance_of_a_function_is_unbiased(function, samples, known):
+def test_transmittance_of_a_function_is_unbiased(make, samples, known, request):
+    needs_numba = samples > 1e5 or "njit" in request.node.callspec.id
+    function = make(request.getfixturevalue("compiled") if needs_numba else None)
     field = fp.DensityFunction(function, -2, 2, bounds=known, cells=8)
     for scale in (1.0, 1.01):
         medium = fp.Component(field, sigma_s=scale)
@@ -59,14 +92,14 @@ def test_transmittance_of_a_function_is_unbiased(function, samples, known):
     assert paths.statistics["bound_violations"] == 0
 
 
-def test_functions_are_rendered():
+def test_functions_are_rendered(compiled):
     field = fp.DensityFunction(compiled, -2, 2, bounds=bounds)
     picture = fp.render(fp.Scene.around(field, size=(20, 12), environment=1.0), spp=16)
     assert picture.alpha.max() > 0.3
     assert abs(picture.image.mean() - 1) < 0.05
 
 
-def test_a_baked_function_is_the_field_of_its_samples():
+def test_a_baked_function_is_the_field_of_its_samples(compiled):
     function = fp.DensityFunction(gaussian, [-2, -1, -2], [2, 1, 2], bounds=(0, 1), name="bell")
     field = function.bake(0.25)
     assert field.shape == (16, 8, 16) and field.name == "bell"
@@ -131,7 +164,7 @@ def test_functions_are_let_go():
     assert gone() is None
 
 
-def test_ctypes_functions_have_the_signature_of_compiled_ones():
+def test_ctypes_functions_have_the_signature_of_compiled_ones(compiled):
     """A C function pointer that was made by hand."""
     signature = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_ssize_t)
     field = fp.DensityFunction(signature(compiled.address), -2, 2, bounds=(0, 1))

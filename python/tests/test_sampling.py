@@ -380,3 +380,15 @@ def test_bad_media_have_one_clear_error(cloud):
         fp.Medium(np.ones((3, 3)))
     with pytest.raises(TypeError, match="ndarray is no Field"):
         fp.Component(np.ones((3, 3, 3)))
+
+
+def test_rays_of_dlpack_are_read(cloud):
+    class Tensor:
+        def __init__(self, array):
+            self.__dlpack__, self.__dlpack_device__ = array.__dlpack__, array.__dlpack_device__
+
+    directions = np.random.default_rng(1).normal(size=(50, 3)).astype(np.float32)
+    ends = np.linspace(1, 5, 50)
+    one = fp.sample_free_paths(cloud, [2, 2, 3], Tensor(directions), t_max=Tensor(ends))
+    other = fp.sample_free_paths(cloud, [2, 2, 3], directions, t_max=ends)
+    assert np.array_equal(one.distance, other.distance)

@@ -110,6 +110,41 @@ TEST(Comparison, MeasuresTheSameAgainUpToTimes) {
   }
 }
 
+// What a cluster does: rounds that others have run, against references that another one has made.
+TEST(Comparison, MergesRoundsIntoTheComparisonOfAll) {
+  ComparisonSettings settings = settings_for({"delta", "weighted-delta"});
+  const Comparison whole = compare(small_target(), settings);
+  settings.references = references_of(small_target(), settings);
+  EXPECT_EQ(settings.references[0].estimates.mean, whole.references[0].estimates.mean);
+  std::vector<Comparison> rounds;
+  for (int round = 0; round < settings.repeats; ++round) {
+    settings.first_round = round;
+    settings.end_round = round + 1;
+    rounds.push_back(compare(small_target(), settings));
+    EXPECT_EQ(rounds.back().configurations[0].runs.size(), 1U);
+  }
+  const Comparison merged = merge_rounds(rounds);
+  EXPECT_EQ(merged.tests, whole.tests);
+  EXPECT_EQ(merged.threshold, whole.threshold);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ConfigurationResult& a = whole.configurations[i];
+    const ConfigurationResult& b = merged.configurations[i];
+    EXPECT_EQ(a.together.mean, b.together.mean);
+    EXPECT_EQ(a.together.variance, b.together.variance);
+    EXPECT_EQ(a.flip, b.flip);
+    EXPECT_EQ(a.bias.block_z, b.bias.block_z);
+    ASSERT_EQ(b.runs.size(), 4U);
+    for (std::size_t run = 0; run < 4; ++run) {
+      EXPECT_EQ(a.runs[run].error.mse, b.runs[run].error.mse);
+      EXPECT_EQ(a.runs[run].free_paths.lookups, b.runs[run].free_paths.lookups);
+    }
+    EXPECT_TRUE(b.efficiency->low.has_value());
+  }
+  settings.configurations = trackers({"delta"});
+  rounds[3] = compare(small_target(), settings);
+  EXPECT_THROW(merge_rounds(rounds), Error);
+}
+
 // Two experiments with other seeds: their intervals have to overlap. By look-ups, since seconds are
 // the machine's.
 TEST(Comparison, FindsEfficienciesAgain) {
