@@ -16,7 +16,9 @@ def settle(scene, size):
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
-    scene.render.use_persistent_data = True
+    # Where data persist, another seed alone is not noticed, and the old picture stays. So every
+    # picture loads anew, alike for one sample and for many, whose difference counts.
+    scene.render.use_persistent_data = False
     scene.render.threads_mode, scene.render.threads = "FIXED", int(sys.argv[1])
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
@@ -115,12 +117,10 @@ def load(description):
 
     def render(spp, seed):
         scene.cycles.samples, scene.cycles.seed = spp, seed
-        # Another seed alone is not noticed where data persist, and the old picture stays.
-        scene.camera.update_tag()
         bpy.ops.render.render()
         return write
 
     return f"Blender {bpy.app.version_string}, Cycles", render
 
 
-serve(load)
+serve(load, compiles=False)

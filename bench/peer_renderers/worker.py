@@ -6,13 +6,14 @@ import sys
 import time
 
 
-def serve(load):
+def serve(load, compiles=True):
     """Answers lines of JSON with one line each.
 
     The first request is a scene, of which `load` makes a function of spp and seed that renders and
     returns what else has to be called, untimed, with the path of the PFM file. The answer to it is
     what describes the renderer. The others are {"spp", "seed", "picture"}; their answer is the CPU
-    time of the process, all threads, for rendering.
+    time of the process, all threads, for rendering. What `compiles` renders a first picture of each
+    sample count untimed.
     """
     # What libraries print goes to the log, not between the answers.
     answers = os.fdopen(os.dup(1), "w")
@@ -27,8 +28,7 @@ def serve(load):
     warm = set()
     for line in sys.stdin:
         request = json.loads(line)
-        # A first picture of each sample count compiles what has to be compiled.
-        if request["spp"] not in warm:
+        if compiles and request["spp"] not in warm:
             render(request["spp"], 0)
             warm.add(request["spp"])
         before = time.process_time()

@@ -152,11 +152,11 @@ std::array<double, 4> RayMedium::cubic(int k, const Vec3i& base, const Vec3d& fr
           yz * dx * dy + xz * dx * dz + xy * dy * dz, a[1][1][1] * dx * dy * dz};
 }
 
-RayMedium::Densities RayMedium::computed(const Vec3d& place) const {
+RayMedium::Densities RayMedium::computed(const Vec3d& point) const {
   Vec3f position;
   for (int axis = 0; axis < 3; ++axis) {
     position[axis] = view_.cell_origin[axis] +
-                     static_cast<float>(place[axis] / view_.cell_size) * view_.cell_edge[axis];
+                     static_cast<float>(point[axis] / view_.cell_size) * view_.cell_edge[axis];
   }
   Densities result{};
   for (int k = 0; k < component_count(); ++k) {

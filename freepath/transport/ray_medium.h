@@ -104,7 +104,7 @@ class RayMedium {
   /// A path as it passes through the voxels of a component.
   Path path_in(int k, const Path& path) const;
   /// Densities that functions compute.
-  Densities computed(const Vec3d& place) const;
+  Densities computed(const Vec3d& point) const;
   /// Value of a voxel, counted from the first of the index.
   double voxel(int k, const Vec3i& coord) const;
   /// The nearest voxel that has a next one along every axis within the index of a component.

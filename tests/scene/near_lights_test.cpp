@@ -20,7 +20,7 @@ namespace {
 const std::string kOnce = "Integrator \"volpath\" \"integer maxdepth\" 1\n";
 
 /// Rays along z, at (0, 0).
-std::string along_z(const std::string& world, const std::string& settings) {
+std::string rays_along_z(const std::string& world, const std::string& settings) {
   return settings + film(8) +
          "LookAt 0 0 -9  0 0 0  0 1 0\n"
          "Camera \"orthographic\" \"float screenwindow\" [ -1e-4 1e-4 -1e-4 1e-4 ]\nWorldBegin\n" +
@@ -72,7 +72,7 @@ double two(const Vec3d& /*direction*/) { return 2; }
 TEST(NearLights, PointInGreyFogIsThatOfQuadrature) {
   for (const double g : {0.0, -0.5, 0.4}) {
     const double expected = scattered_once(0.3, 0.9, g, kHeight, two);
-    const std::string scene = along_z(kPoint + fog(Vec3d(0.3), Vec3d(0.9), g), kOnce);
+    const std::string scene = rays_along_z(kPoint + fog(Vec3d(0.3), Vec3d(0.9), g), kOnce);
     for (const ColorMode mode : kColorModes) {
       expect_mean(fmt::format("{} g {}", name_of(mode), g),
                   render_text(scene, {.mode = mode, .samples = 4096}),
@@ -92,8 +92,8 @@ TEST(NearLights, PointInChromaticFogIsThatOfQuadrature) {
        {"delta", "weighted-delta", "spectral", "hero-wavelength", "spectral-decomposition"}) {
     const std::string integrator = fmt::format(
         "Integrator \"volpath\" \"integer maxdepth\" 1 \"string tracker\" \"{}\"\n", tracker);
-    const Picture picture =
-        render_text(along_z(kPoint + fog(sigma_a, sigma_s, 0.4), integrator), {.samples = 4096});
+    const Picture picture = render_text(
+        rays_along_z(kPoint + fog(sigma_a, sigma_s, 0.4), integrator), {.samples = 4096});
     expect_mean(tracker, picture, expected, {.largest_relative_error = 0.004});
   }
 }
@@ -110,9 +110,10 @@ TEST(NearLights, SpotIsThatOfQuadrature) {
   const std::string spot =
       R"(LightSource "spot" "rgb I" [ 3 3 3 ] "point3 from" [ 0.3 0 0 ] "point3 to" [ -0.5 0 0.6 ] )"
       "\"float coneangle\" 40 \"float conedeltaangle\" 15\n";
-  expect_mean("spot",
-              render_text(along_z(spot + fog(Vec3d(0.2), Vec3d(1), 0.3), kOnce), {.samples = 4096}),
-              {expected, expected, expected}, {.largest_relative_error = 0.002});
+  expect_mean(
+      "spot",
+      render_text(rays_along_z(spot + fog(Vec3d(0.2), Vec3d(1), 0.3), kOnce), {.samples = 4096}),
+      {expected, expected, expected}, {.largest_relative_error = 0.002});
 }
 
 // Its light is found by lines and by chance: the shares of both have to be one.
@@ -138,9 +139,10 @@ TEST(NearLights, SmallBallThatShinesIsThatOfQuadrature) {
       "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 900 900 900 ] "
       "Translate 0.1 0 0 MediumInterface \"\" \"fog\" Material \"diffuse\" \"rgb reflectance\" "
       "[ 0 0 0 ] Shape \"sphere\" \"float radius\" 0.015 AttributeEnd\n";
-  expect_mean("ball",
-              render_text(along_z(fog(Vec3d(0.2), Vec3d(0.8), 0) + ball, kOnce), {.samples = 8192}),
-              {expected, expected, expected}, {.largest_relative_error = 0.003});
+  expect_mean(
+      "ball",
+      render_text(rays_along_z(fog(Vec3d(0.2), Vec3d(0.8), 0) + ball, kOnce), {.samples = 8192}),
+      {expected, expected, expected}, {.largest_relative_error = 0.003});
 }
 
 /// Fog and a denser part of it about a hole with two lights, a mirror that hides one, a wall.
@@ -217,7 +219,8 @@ AttributeBegin AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] Translate 0 0 3
 TEST(NearLights, LayersTellWhatWasScatteredOnce) {
   const std::string world = kPoint + fog(Vec3d(0.3), Vec3d(0.9), 0);
   Diagnostics diagnostics;
-  const BuiltScene built = build_scene(parse(along_z(world, kUnlimited), diagnostics), diagnostics);
+  const BuiltScene built =
+      build_scene(parse(rays_along_z(world, kUnlimited), diagnostics), diagnostics);
   RenderSettings settings = settings_of(built, {.samples = 2048});
   settings.layers = LayerSet::all();
   const RenderResult result = render_scene(built.scene, ColorMode::kRgb, settings);
