@@ -79,9 +79,8 @@ def load(scene):
         raise SystemExit("Mitsuba's heterogeneous media do not emit")
     sigma_s = np.array(scene["sigma_s"])
     sigma_t = sigma_s + np.array(scene["sigma_a"])
-    # Where extinctions differ much, volpath and volpathmis have noise without measure: 8 % of the
-    # red of a cloud are missing at 48 samples. So each channel is rendered by itself, which serves
-    # best.
+    # Where extinctions differ much, volpath and volpathmis lost 5 to 8 % of the red of a cloud
+    # at 48 samples, by noise or bias. So each channel is rendered by itself, which serves best.
     chromatic = len(set(sigma_t)) > 1
     loaded = [
         mi.load_dict(description_of(scene, sigma_s, value))
