@@ -244,7 +244,7 @@ def compare_options(
     Raises:
         Error: for what is out of range, and what can't be said together.
     """
-    render = picture_options(scene, seed=seed, color=color, **how)
+    render = picture_options(scene, seed=seed, color=color, adaptive=False, **how)
     options = _freepath.CompareOptions()
     options.trackers = (
         _freepath.compared_trackers.split(",") if trackers is None else listed(trackers)

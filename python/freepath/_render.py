@@ -227,7 +227,8 @@ def render(
     finally:
         if shown is not None:
             shown.close()
-    return checked(Picture(core, lambda: facts_of(scene, options)))
+    picture = Picture(core, lambda: facts_of(scene, options))
+    return checked(picture, is_part=samples is not None)
 
 
 def film_of_part(scene: Scene, **how: Any) -> Film:
@@ -316,7 +317,7 @@ def _callback(progress: Any) -> tuple[Callable[..., Any] | None, bool]:
     return tell, getattr(progress, "wants_pictures", True)
 
 
-def checked(picture: Picture) -> Picture:
+def checked(picture: Picture, *, is_part: bool = False) -> Picture:
     """Return a picture after saying what makes it less than it should be.
 
     Raises:
@@ -329,7 +330,8 @@ def checked(picture: Picture) -> Picture:
             f"{cause} after {stats['seconds']:.1f} s, before any pixel had a sample: "
             "give more time, or choose a smaller size or a thinner volume"
         )
-    if stats["pixels_without_samples"]:
+    # Of a part it goes without saying: other parts have the samples of these pixels.
+    if stats["pixels_without_samples"] and not is_part:
         warnings.warn(
             f"{stats['pixels_without_samples']} pixels have no sample, for want of time or "
             "of rounds: black with alpha 0",
