@@ -291,10 +291,7 @@ void require_no_overflows(const RenderResult& result) {
 }
 
 std::string samples_text(const RenderResult& result) {
-  if (result.most_samples == result.samples) {
-    const bool differs = result.film.has_shares();
-    return counted(result.samples, "sample") + (differs ? " on average" : "");
-  }
+  if (result.most_samples == result.samples) return counted(result.samples, "sample");
   return fmt::format("{} to {} samples", result.samples, result.most_samples);
 }
 

@@ -61,7 +61,7 @@ Stage frame_sequence(const RenderPlan& plan, std::span<const PictureFiles> frame
 /// @param last the one of the frame before, of which there is nothing new to say
 std::string settled_tracker(const std::string& tracker, const Medium& medium,
                             const std::string& last = {}) {
-  const TrackerChoice choice = settle_tracker(tracker, medium);
+  const TrackerChoice choice = settle_picture_tracker(tracker, medium);
   if (choice.reason.empty()) {
     if (last.empty()) warn_if_biased(tracker);
   } else if (choice.tracker != last) {

@@ -143,7 +143,7 @@ LoadedTarget target_of_medium(const PictureOptions& options, VolumeMedium volume
   loaded.settings = read_run_settings(options);
   loaded.film = size;
   const Medium& medium = *volumes.medium;
-  const TrackerChoice choice = settle_tracker("auto", medium);
+  const TrackerChoice choice = settle_picture_tracker("auto", medium);
   loaded.automatic_tracker = choice.tracker;
   loaded.reason = choice.reason;
   loaded.target = target_of(

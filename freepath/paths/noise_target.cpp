@@ -1,6 +1,7 @@
 #include "freepath/paths/noise_target.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -17,51 +18,69 @@ constexpr double kShareOfPilot = 1.0 / 16;
 constexpr double kMargin = 1.05;
 constexpr double kMostSamples = 1U << 30;
 
-/// @param variance of the mean of a pixel's channel
-template <class Variance>
-double noise_by(const Film& film, const Variance& variance) {
-  double sum = 0;
-  double squares = 0;
+/// The variance of single samples of a film's pixels, summed over those of each share.
+using VarianceOfShares = std::array<double, SampleShare::kSteps>;
+
+VarianceOfShares variance_of_shares(const Film& film) {
+  VarianceOfShares sums{};
   for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
     for (int channel = 0; channel < kChannels; ++channel) {
-      sum += film.mean(pixel, channel);
-      squares += variance(pixel, channel);
+      sums[film.share(pixel).step()] += film.variance(pixel, channel) * film.samples(pixel);
     }
   }
-  if (squares == 0) return 0;
-  const double values = static_cast<double>(film.pixel_count()) * kChannels;
-  return std::sqrt(squares / values) / std::abs(sum / values);
+  return sums;
 }
 
-/// The noise of a picture of as many rounds whose pixels had exactly their shares of the samples:
-/// of a few rounds they have more.
-double noise_of_shares(const Film& film) {
-  return noise_by(film, [&](std::size_t pixel, int channel) {
-    const double share = film.share(pixel).value() * film.rounds(pixel);
-    return film.variance(pixel, channel) * film.samples(pixel) / share;
-  });
+/// The sum of the variances of the pixels' means after so many rounds.
+double variance_after(const VarianceOfShares& sums, uint32_t rounds) {
+  double sum = 0;
+  for (uint8_t step = 0; step < SampleShare::kSteps; ++step) {
+    sum += sums[step] / SampleShare(step).samples(rounds);
+  }
+  return sum;
 }
+
+/// The mean of a film's channels and pixels.
+double mean_of(const Film& film) {
+  double sum = 0;
+  for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < kChannels; ++channel) sum += film.mean(pixel, channel);
+  }
+  return sum / (static_cast<double>(film.pixel_count()) * kChannels);
+}
+
+/// The number of channels and pixels.
+double count_of(const Film& film) { return static_cast<double>(film.pixel_count()) * kChannels; }
 
 }  // namespace
 
 uint64_t pilot_seed(uint64_t seed) { return seed ^ kPilotSeed; }
 
 double relative_noise(const Film& film) {
-  return noise_by(film,
-                  [&](std::size_t pixel, int channel) { return film.variance(pixel, channel); });
+  double variance = 0;
+  for (std::size_t pixel = 0; pixel < film.pixel_count(); ++pixel) {
+    for (int channel = 0; channel < kChannels; ++channel) variance += film.variance(pixel, channel);
+  }
+  return variance == 0 ? 0 : std::sqrt(variance / count_of(film)) / std::abs(mean_of(film));
 }
 
 NoisePlan plan_of_pilot(const Film& pilot, double noise, uint32_t most) {
   NoisePlan plan;
   plan.pilot_samples = pilot.sample_counts().fewest;
-  plan.pilot_noise = noise_of_shares(pilot);
+  plan.pilot_noise = relative_noise(pilot);
   if (!std::isfinite(plan.pilot_noise)) {
     fail("the noise of this picture is not known, as the variance of a pixel is infinite");
   }
   const double limit = most > 0 ? most : kMostSamples;
-  const double needed =
-      kMargin * plan.pilot_samples * (plan.pilot_noise / noise) * (plan.pilot_noise / noise);
-  plan.samples = static_cast<uint32_t>(std::clamp(std::ceil(needed), 2.0, std::max(2.0, limit)));
+  const VarianceOfShares sums = variance_of_shares(pilot);
+  const double wanted = std::pow(noise * mean_of(pilot), 2) * count_of(pilot) / kMargin;
+  uint32_t too_few = 1;
+  auto enough = static_cast<uint32_t>(std::max(2.0, limit));
+  while (enough - too_few > 1) {
+    const uint32_t middle = too_few + (enough - too_few) / 2;
+    (variance_after(sums, middle) > wanted ? too_few : enough) = middle;
+  }
+  plan.samples = enough;
   plan.is_known = plan.pilot_samples >= kShareOfPilot * plan.samples;
   return plan;
 }

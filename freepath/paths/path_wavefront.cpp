@@ -226,7 +226,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   const auto channel = static_cast<int>(number % per_sample);
   const PixelSample at = pixel_sample_of(jobs_[newest_].job, ordered);
   path.result = static_cast<uint32_t>(jobs_[newest_].first) + number;
-  path.pixel = at.pixel;
+  path.pixel = setup_.first_random_pixel + at.pixel;
   path.sample_key = at.sample * per_sample + channel;
   // The paths of a sample start one after the other.
   if (channel == 0) colors_of_sample_ = &colors_of(at);
@@ -246,8 +246,8 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
   const auto film = film_pair(numbers, path.pixel, at.sample);
   const FilterSample filtered = scene_.filter.sample(film[0], film[1]);
   const auto width = static_cast<uint32_t>(window_.full_width);
-  const float x = static_cast<float>(path.pixel % width) + 0.5F + filtered.x;
-  const uint32_t row = path.pixel / width;
+  const float x = static_cast<float>(at.pixel % width) + 0.5F + filtered.x;
+  const uint32_t row = at.pixel / width;
   const float y = static_cast<float>(row) + 0.5F + filtered.y;
   std::array<float, 2> lens{};
   if (scene_.camera->has_lens()) lens = numbers.pair(kLensDimension);

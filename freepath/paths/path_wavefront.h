@@ -51,6 +51,8 @@ struct PathSetup {
   std::size_t slots = kPathsInFlight;
   /// Pixels of the camera along the edge of a pixel of the film.
   float pixel_edge = 1;
+  /// What the film's pixels are numbered from on for random numbers.
+  uint32_t first_random_pixel = 0;
   /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const SampleSpectra>> colors;
   uint32_t first_set = 0;

@@ -79,10 +79,10 @@ Pilot render_pilot(PathSetup setup, const RenderSettings& settings,
                    const ProgressFunction& progress) {
   const Camera& camera = *setup.scene->camera;
   const PilotGrid grid = PilotGrid::over(camera.width(), camera.height());
-  Pilot pilot{grid, Film(PixelWindow::whole(grid.width, grid.height), {}, {}, kFirstPilotSample)};
+  Pilot pilot{grid, Film(PixelWindow::whole(grid.width, grid.height), {})};
   setup.pixel_edge = static_cast<float>(grid.edge);
+  setup.first_random_pixel = kFirstPilotPixel;
   RenderSettings few = pilot_settings(settings);
-  few.first_sample = kFirstPilotSample;
   few.samples = kPilotSamples;
   const ProgressFunction wait = [&](const RenderProgress& now) {
     return progress({0, double(settings.samples), now.seconds});
@@ -113,11 +113,6 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
                           const ProgressFunction& progress) {
   if (settings.samples == 0 && settings.time_limit <= 0) {
     fail("nothing to render: neither samples nor a time limit is given");
-  }
-  constexpr auto kMostAdaptive = static_cast<uint32_t>(kFirstPilotSample / SampleShare::kLargest);
-  if (settings.adaptive && (settings.samples > kMostAdaptive ||
-                            settings.first_sample > kMostAdaptive - settings.samples)) {
-    fail("an adaptive picture has at most {} samples; render more without", kMostAdaptive);
   }
   const PixelWindow window =
       pixel_window(settings.crop, scene.camera->width(), scene.camera->height());

@@ -22,9 +22,9 @@ struct PilotGrid {
 
 /// Samples that a pilot takes of each of its pixels.
 inline constexpr uint32_t kPilotSamples = 4;
-/// Number of the first of them: no picture comes so far, so that a pilot's random numbers are its
-/// own. It begins blocks of whatever stratifies samples.
-inline constexpr uint32_t kFirstPilotSample = uint32_t{1} << 28;
+/// Number of its first pixel for random numbers: no picture has so many, so that a pilot's are its
+/// own.
+inline constexpr uint32_t kFirstPilotPixel = uint32_t{1} << 31;
 
 /// The shares of the samples that the squares of a pilot's grid take, row by row: their mean over
 /// the squares is 1, as nearly as steps allow.

@@ -32,24 +32,25 @@ class SampleShare {
   constexpr double value() const { return static_cast<double>(kSixteenths[step_]) / kUnit; }
   constexpr bool is_one() const { return step_ == kOne; }
 
-  /// Samples that so many rounds come to, of which the first few have one at least.
+  /// Samples that so many rounds come to: in each of the first few one, whatever the share.
   constexpr uint32_t samples(uint32_t rounds) const {
-    const uint64_t share = uint64_t{rounds} * kSixteenths[step_] / kUnit;
-    return static_cast<uint32_t>(std::max<uint64_t>(share, std::min(rounds, kFewest)));
+    if (rounds <= kFewest) return rounds;
+    const uint64_t more = uint64_t{rounds - kFewest} * kSixteenths[step_] / kUnit;
+    return static_cast<uint32_t>(std::min<uint64_t>(kFewest + more, UINT32_MAX));
   }
 
   /// The round that a sample is of.
   constexpr uint32_t round_of(uint32_t sample) const {
+    if (sample < kFewest) return sample;
     const uint64_t sixteenths = kSixteenths[step_];
-    const auto round =
-        static_cast<uint32_t>(((uint64_t{sample} + 1) * kUnit + sixteenths - 1) / sixteenths - 1);
-    return sample < kFewest ? std::min(sample, round) : round;
+    const uint64_t more = uint64_t{sample - kFewest} + 1;
+    return static_cast<uint32_t>(kFewest + (more * kUnit + sixteenths - 1) / sixteenths - 1);
   }
 
   constexpr bool operator==(const SampleShare&) const = default;
 
   static constexpr std::size_t kSteps = 9;
-  /// Rounds after which every pixel has so many samples, lest its variance be unknown.
+  /// Rounds in which all pixels have a sample, lest their variance be unknown.
   static constexpr uint32_t kFewest = 4;
 
  private:

@@ -32,4 +32,9 @@ TrackerChoice settle_tracker(std::string tracker, const Medium& medium);
 TrackerChoice settle_tracker(std::string tracker, const Medium& medium,
                              const MediumChannels& channels);
 
+/// The tracker that a name stands for in pictures of a medium, where each channel may have a path
+/// of its own: of `auto` such paths where the extinctions of channels differ much and paths scatter
+/// often, since the weights of a common path spread with each scattering; else as settle_tracker().
+TrackerChoice settle_picture_tracker(std::string tracker, const Medium& medium);
+
 }  // namespace freepath

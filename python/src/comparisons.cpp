@@ -63,9 +63,9 @@ std::vector<Configuration> configurations_of(const CompareOptions& options, cons
     walk.interpolation = word;
     interpolations.push_back(walk_settings(walk).interpolation);
   }
-  const std::string automatic = is_of_file
-                                    ? standard_tracker(scene)
-                                    : settle_tracker("auto", *scene.media[0].medium()).tracker;
+  const std::string automatic =
+      is_of_file ? standard_tracker(scene)
+                 : settle_picture_tracker("auto", *scene.media[0].medium()).tracker;
   return all_configurations(methods_of(options.trackers, tracker_choices()),
                             methods_of(options.estimators, transmittance_infos()), interpolations,
                             automatic);

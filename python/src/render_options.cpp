@@ -61,8 +61,8 @@ RenderSettings render_settings(const PythonScene& scene, const RenderOptions& op
   settings.walk.seed = wishes.seed.value_or(0);
   const std::string tracker = wishes.tracker.value_or("delta");
   settings.walk.tracker =
-      settle_tracker(to_string(parse_method(tracker, tracker_choices()), tracker_choices()),
-                     *scene.built.scene.media[0].medium())
+      settle_picture_tracker(to_string(parse_method(tracker, tracker_choices()), tracker_choices()),
+                             *scene.built.scene.media[0].medium())
           .tracker;
   settings.walk.transmittance =
       to_string(parse_method(wishes.transmittance.value_or("ratio"), transmittance_infos()),

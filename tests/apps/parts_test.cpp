@@ -193,13 +193,18 @@ TEST_F(PartsTest, AveragesOfSeedsHaveTheirWeightsAndVariances) {
     return double{image.pixel(i % 12, i / 12)[*find_channel(image, channel)]};
   };
   for (int i = 0; i < 12 * 9; ++i) {
-    EXPECT_EQ(value(m, i, "samples"), 256);
-    EXPECT_NEAR(value(m, i, "G"), 0.25 * value(a, i, "G") + 0.75 * value(b, i, "G"), 1e-6);
+    const double of_a = value(a, i, "samples");
+    const double of_b = value(b, i, "samples");
+    const double of_both = of_a + of_b;
+    EXPECT_EQ(value(m, i, "samples"), of_both);
+    EXPECT_NEAR(value(m, i, "G"), (of_a * value(a, i, "G") + of_b * value(b, i, "G")) / of_both,
+                1e-6);
     // Sums of squares about each mean, and between the means.
-    const double within =
-        value(a, i, "variance.G") * 64 * 63 + value(b, i, "variance.G") * 192 * 191;
+    const double within = value(a, i, "variance.G") * of_a * (of_a - 1) +
+                          value(b, i, "variance.G") * of_b * (of_b - 1);
     const double apart = value(a, i, "G") - value(b, i, "G");
-    const double expected = (within + 64 * 0.75 * apart * apart) / 255 / 256;
+    const double expected =
+        (within + of_a * of_b / of_both * apart * apart) / (of_both - 1) / of_both;
     EXPECT_NEAR(value(m, i, "variance.G"), expected, 1e-4 * expected + 1e-12);
   }
 }

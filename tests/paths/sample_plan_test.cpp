@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "freepath/base/error.h"
 #include "tests/paths/lumpy_cloud.h"
 #include "tests/scene/volume_pictures.h"
 #include "tests/statistics.h"
@@ -174,11 +173,6 @@ TEST(SamplePlan, ErrorsFallFasterThanThoseOfUniformPictures) {
     return squares * cost;
   };
   EXPECT_LT(cost_of_error(true), 0.8 * cost_of_error(false));
-}
-
-TEST(SamplePlan, MoreSamplesThanItsNumbersReachAreRefused) {
-  SmallCloud cloud;
-  EXPECT_THROW(cloud.render((1U << 26) + 1), Error);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ TEST(SampleShare, SamplesGrowWithRounds) {
       EXPECT_GE(share.samples(rounds), std::min(rounds, SampleShare::kFewest));
     }
     for (const uint32_t rounds : {64U, 1000U, 1U << 26}) {
-      EXPECT_EQ(share.samples(rounds), std::floor(rounds * share.value())) << share.value();
+      EXPECT_EQ(share.samples(rounds), 4 + std::floor((rounds - 4) * share.value()))
+          << share.value();
     }
   }
 }
