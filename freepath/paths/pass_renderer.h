@@ -79,6 +79,7 @@ class PassRenderer {
       if (over_) break;
       samples_done_ += samples;
       ahead_ = 0;
+      paths_done_ = samples_done_;  // which parts of them have come to but for rounding
       if (settings_.on_pass) settings_.on_pass(film_);
       const double now = seconds_since(start_);
       const bool needs_more = settings_.whole_passes && samples_done_ < 2;
