@@ -182,6 +182,7 @@ LightResult trace_light(const std::vector<FluxScene>& scenes, FluxSettings setti
 std::vector<VolumeMedium> channels_of(VolumeMedium medium, int super_voxel) {
   if (medium.medium->is_grey()) return {std::move(medium)};
   std::vector<VolumeMedium> channels;
+  channels.reserve(kChannels);
   for (int c = 0; c < kChannels; ++c) {
     channels.push_back(medium_in_channel(medium, c, super_voxel));
   }

@@ -145,7 +145,7 @@ void write_maps(const std::string& path, const FluxReport& report) {
     const std::string ending = report.is_grey ? "" : "." + channel_name(c);
     const auto add = [&](const std::string& name, const FluxMap& map) {
       image.channels.push_back(name + ending);
-      image.channels.push_back(name + ".error" + ending);
+      image.channels.push_back(fmt::format("{}.error{}", name, ending));
       maps.push_back(&map);
     };
     for (const auto& [name, map] : maps_of(results[c])) add(name, *map);

@@ -141,8 +141,7 @@ void Surfaces::Data::note_offsets(const TracedPart& part, const AffineTransform&
 }
 
 void Surfaces::Data::note_offset(const TracedShape& shape, const AffineTransform& to_world) {
-  // Many roundings of doubles of this size.
-  constexpr double kRoundings = 0x1p-42;
+  constexpr double kRoundings = 0x1p-42;  // many roundings of doubles of this size
   double largest = std::max({std::abs(to_world.translation.x), std::abs(to_world.translation.y),
                              std::abs(to_world.translation.z)});
   for (const Vec3d& corner : corners_of(shape.box)) {
