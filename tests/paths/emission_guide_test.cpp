@@ -206,7 +206,6 @@ TEST(EmissionGuide, FollowsTemperature) {
                 0.2F};
   }
   const EmissionGuide guide(bound, kOrigin);
-  RandomStream random(2, 2, 2, 2);
   const Vec3f far((Vec3d(15, 8, 8) * crooked()) - kOrigin);
   const Vec3f edge((Vec3d(5.2, 8, 8) * crooked()) - kOrigin);
   const Vec3f towards = (edge - far).normalized();

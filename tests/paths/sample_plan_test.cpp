@@ -108,8 +108,10 @@ TEST(SamplePlan, SamplesAreThoseOfUniformPictures) {
   const Film film = cloud.render(16);
   cloud.settings.adaptive = false;
   for (std::size_t pixel = 0; pixel < film.pixel_count(); pixel += 7) {
-    const auto x = static_cast<double>(pixel % 40);
-    const auto y = static_cast<double>(pixel / 40);
+    const std::size_t column = pixel % 40;
+    const std::size_t row = pixel / 40;
+    const auto x = static_cast<double>(column);
+    const auto y = static_cast<double>(row);
     cloud.settings.crop = Crop{x, y, x + 1, y + 1};
     const Film alone = cloud.render(film.samples(pixel));
     EXPECT_EQ(film.mean(pixel, 1), alone.mean(0, 1));

@@ -1,6 +1,7 @@
 // What is said of scenes that cannot be rendered: one error, that begins with its place and names
 // the trouble; and of those that are rendered otherwise than their authors may think.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -247,13 +248,13 @@ TEST(BuildErrors, InvalidPixelsAreZeroWithAWarningOrRefused) {
     values[9] = std::numeric_limits<float>::quiet_NaN();
     pixels.write(reinterpret_cast<const char*>(values.data()), sizeof(values));
   }
-  const std::string name = "\"string filename\" \"" + file.path().string() + "\"";
+  const std::string name = fmt::format(R"("string filename" "{}")", file.path().string());
   for (const std::string statement :
-       {"Texture \"t\" \"spectrum\" \"imagemap\" ", "Texture \"t\" \"float\" \"imagemap\" ",
-        "LightSource \"infinite\" ", "LightSource \"projection\" ", "LightSource \"goniometric\" ",
-        "AreaLightSource \"diffuse\" "}) {
+       {R"(Texture "t" "spectrum" "imagemap")", R"(Texture "t" "float" "imagemap")",
+        R"(LightSource "infinite")", R"(LightSource "projection")", R"(LightSource "goniometric")",
+        R"(AreaLightSource "diffuse")"}) {
     SCOPED_TRACE(statement);
-    const std::string text = "WorldBegin\n" + statement + name + "\nShape \"sphere\"";
+    const std::string text = fmt::format("WorldBegin\n{} {}\nShape \"sphere\"", statement, name);
     Diagnostics diagnostics;
     build_scene(parse(text, diagnostics), diagnostics);
     ASSERT_EQ(diagnostics.warnings().size(), 1U);

@@ -8,9 +8,9 @@ namespace freepath {
 namespace {
 
 TEST(SampleShare, IsOneAtFirst) {
-  constexpr SampleShare share;
-  static_assert(share.is_one());
-  for (uint32_t rounds = 0; rounds < 40; ++rounds) EXPECT_EQ(share.samples(rounds), rounds);
+  constexpr SampleShare kShare;
+  static_assert(kShare.is_one());
+  for (uint32_t rounds = 0; rounds < 40; ++rounds) EXPECT_EQ(kShare.samples(rounds), rounds);
 }
 
 // However rounds are cut, each sample is of one part.

@@ -145,10 +145,10 @@ TEST(SparseWalk, FlightsGoOnFromPartToPart) {
       {"decomposition", false}, {"weighted-decomposition", false}, {"regular", false},
       {"spectral", true},       {"spectral-decomposition", true},  {"hero-wavelength", true}};
   constexpr float kAbsorbed = 0.3F;
-  const Rgb kColor(1, 0.5F, 0.25F);
+  const Rgb color(1, 0.5F, 0.25F);
   for (const Twins& twins : all_twins()) {
     for (const TrackerCase& test : kCases) {
-      const Medium medium = medium_of_twins(twins, test.chromatic ? kColor : Rgb(1), kAbsorbed);
+      const Medium medium = medium_of_twins(twins, test.chromatic ? color : Rgb(1), kAbsorbed);
       WalkSettings settings;
       settings.tracker = test.tracker;
       settings.interpolation = Interpolation::kTrilinear;
@@ -158,7 +158,7 @@ TEST(SparseWalk, FlightsGoOnFromPartToPart) {
       const Arrivals arrivals = arrivals_of(walker, twins, paths);
       const double depth = depth_of_cloud(twins, Interpolation::kTrilinear);
       for (int c = 0; c < walker.channels(); ++c) {
-        const double sigma = test.chromatic ? kColor[c] : 1;
+        const double sigma = test.chromatic ? color[c] : 1;
         const double first = std::exp(-sigma * depth);
         const double whole = std::exp(-1.5 * sigma * depth);
         const std::string name =
