@@ -144,7 +144,7 @@ uint64_t paths_for(double error, const FluxScene& scene, FluxSettings settings,
   return paths_for_error(error, largest, "--error");
 }
 
-/// What came of one light.
+/// Fluxes of one light.
 struct LightResult {
   std::vector<FluxResult> channels;  ///< Results of the scenes that were begun.
   bool is_partial = false;

@@ -53,7 +53,7 @@ bool is_nearest(SurfaceQuery& query, const TracedShape& shape, const LinePoint& 
   }
   query.is_tied = is_tied;
   query.nearest = position;
-  // What is at the same position has to be offered, too.
+  // Shapes at the same position have to be offered, too.
   t_far = static_cast<float>(
       std::min(position.t + query.rule->search_range(query.ray, at, position), query.t_max));
   return true;

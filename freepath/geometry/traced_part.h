@@ -39,7 +39,7 @@ struct TracedInstance {
 
 enum class QueryKind { kNearest, kOcclusion, kCount, kTies, kAll };
 
-/// What the positions of all rays of a scene depend on.
+/// Sizes and directions of a scene that the positions of all its rays depend on.
 struct RayPositionRule {
   std::vector<TracedInstance> instances;
   std::vector<float> smallest_offset;  ///< Indexed by SurfaceShape::shape.
@@ -48,7 +48,8 @@ struct RayPositionRule {
   /// @param at,key of a point where the ray meets a surface of the shape
   RayPosition position(const LocalRay& world, const LinePoint& at, const SurfaceKey& key,
                        uint32_t shape) const;
-  /// How far from its position single precision may find a surface that faces the same way [t].
+  /// Distance from its position within which single precision may find a surface that faces the
+  /// same way [t].
   double search_range(const LocalRay& world, const LinePoint& at,
                       const RayPosition& position) const;
   /// The ray in the space of what a key is of.
@@ -77,7 +78,7 @@ struct SurfaceQuery {
   const RayPositionRule* rule = nullptr;
   unsigned first_instance = 0;  ///< Geometry number of the first instance.
 
-  /// What kNearest has found.
+  /// Hit that kNearest has found.
   RayPosition nearest = {std::numeric_limits<double>::infinity(), 0, {}};
   bool is_tied = false;
 

@@ -36,7 +36,7 @@ struct LinePoint {
   double across = 0;  ///< normal · direction
 };
 
-/// What all kinds of traced shapes share.
+/// Members that all kinds of traced shapes share.
 struct TracedShape {
   uint32_t shape = 0;
   uint32_t first_primitive = 0;
