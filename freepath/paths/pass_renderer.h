@@ -133,16 +133,12 @@ class PassRenderer {
 
   /// Pixels of the same share side by side, where there are several.
   void set_order() {
-    const SampleShare first = film_.share(0);
-    std::vector<uint32_t> order(film_.pixel_count());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto share = [&](uint32_t pixel) { return film_.share(pixel); };
-    if (std::all_of(order.begin(), order.end(), [&](uint32_t i) { return share(i) == first; })) {
-      return;
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return share(a).step() < share(b).step(); });
-    order_ = std::move(order);
+    if (!film_.has_shares()) return;
+    order_.resize(film_.pixel_count());
+    std::iota(order_.begin(), order_.end(), 0U);
+    const auto step = [&](uint32_t pixel) { return film_.share(pixel).step(); };
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](uint32_t a, uint32_t b) { return step(a) < step(b); });
   }
 
   /// The pixels that a pass is about: all, but for those that have its samples already.
