@@ -142,7 +142,7 @@ FilmMean near_light(uint32_t samples, uint64_t seed) {
 
 /// A layer under a sun, over what quadrature says.
 FilmMean lit_layer(uint32_t samples, uint64_t seed) {
-  static const LitLayer kLayer{0, 1.5, 0.8, Vec3d(0.3, 0, 0.9).normalized()};
+  static const LitLayer kLayer{0, 2, 0.8, Vec3d(0.8, 0, 0.6)};
   static const double kExpected = kLayer.once() + kLayer.twice();
   const FilmMean found =
       mean_of(render_text(kLayer.scene(8), {.samples = samples, .seed = seed}).image);
