@@ -28,35 +28,47 @@ double visible_total() {
   return kValue;
 }
 
-/// kFilm, constant between the wavelengths that the observer is tabulated at.
-struct FilmDensity {
-  static constexpr std::size_t kParts = kObserverNodes - 1;
-  std::array<double, kParts> pdf{};            // [1/nm]
-  std::array<double, kParts + 1> integrals{};  // up to the beginning of each part, and to the end
-
+/// kFilm, linear between the wavelengths that the observer is tabulated at.
+class FilmDensity {
+ public:
   FilmDensity() {
     const RgbChromaticities srgb;
     const Matrix3d to_rgb = rgb_to_xyz_matrix(srgb.primaries, srgb.white).inverse(true);
+    double sum = 0;
+    for (std::size_t i = 0; i < kObserverNodes; ++i) {
+      pdf_[i] = (color_matching(observer_node(i)) * to_rgb).length();
+      sum += pdf_[i] * observer_node_width(i);
+    }
+    for (std::size_t i = 0; i < kObserverNodes; ++i) {
+      const double visible = wavelength_pdf(observer_node(i), WavelengthDensity::kVisible);
+      pdf_[i] = std::lerp(pdf_[i] / sum, visible, kFilmVisiblePart);
+    }
     for (std::size_t i = 0; i < kParts; ++i) {
-      const Vec3d middle = color_matching(observer_node(i) + 0.5) * to_rgb;
-      integrals[i + 1] = integrals[i] + middle.length();
+      integrals_[i + 1] = integrals_[i] + (pdf_[i] + pdf_[i + 1]) / 2;
     }
-    const double total = integrals.back();
-    for (std::size_t i = 0; i <= kParts; ++i) {
-      const double visible =
-          (visible_integral(observer_node(i)) - visible_first()) / visible_total();
-      integrals[i] = std::lerp(integrals[i] / total, visible, kFilmVisiblePart);
-    }
-    for (std::size_t i = 0; i < kParts; ++i) pdf[i] = integrals[i + 1] - integrals[i];
+    for (double& value : pdf_) value /= integrals_.back();
+    for (double& value : integrals_) value /= integrals_.back();
   }
-  std::size_t part_of(double wavelength) const {
-    return std::min(static_cast<std::size_t>(wavelength - kShortestWavelength), kParts - 1);
+
+  double at(double wavelength) const {
+    const double way = wavelength - kShortestWavelength;
+    const std::size_t part = std::min(static_cast<std::size_t>(way), kParts - 1);
+    return std::lerp(pdf_[part], pdf_[part + 1], way - static_cast<double>(part));
   }
+
   double sample(double u) const {
-    const auto above = std::upper_bound(integrals.begin() + 1, integrals.end() - 1, u);
-    const auto part = static_cast<std::size_t>(above - integrals.begin()) - 1;
-    return observer_node(part) + std::clamp((u - integrals[part]) / pdf[part], 0.0, 1.0);
+    const auto above = std::upper_bound(integrals_.begin() + 1, integrals_.end() - 1, u);
+    const auto part = static_cast<std::size_t>(above - integrals_.begin()) - 1;
+    const double left = std::max(u - integrals_[part], 0.0);
+    const double begin = pdf_[part];
+    const double root = std::sqrt(begin * begin + 2 * left * (pdf_[part + 1] - begin));
+    return observer_node(part) + std::min(2 * left / (begin + root), 1.0);
   }
+
+ private:
+  static constexpr std::size_t kParts = kObserverNodes - 1;
+  std::array<double, kObserverNodes> pdf_{};        // [1/nm]
+  std::array<double, kObserverNodes> integrals_{};  // up to each
 };
 
 const FilmDensity& film_density() {
@@ -70,7 +82,7 @@ double wavelength_pdf(double wavelength, WavelengthDensity density) {
   if (!(wavelength >= kShortestWavelength && wavelength <= kLongestWavelength)) return 0;
   if (density == WavelengthDensity::kUniform) return 1 / (kLongestWavelength - kShortestWavelength);
   if (density == WavelengthDensity::kFilm) {
-    return film_density().pdf[film_density().part_of(wavelength)];
+    return film_density().at(wavelength);
   }
   const double sech = 1 / std::cosh(kSteepness * (wavelength - kCentre));
   return kSteepness * sech * sech / visible_total();
