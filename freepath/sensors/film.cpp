@@ -1,8 +1,8 @@
 #include "freepath/sensors/film.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -33,14 +33,13 @@ struct LayerSum {
   Rgb LayerSample::*of_path;  ///< What paths add; null: nothing that they find for layers alone.
 };
 /// In the order of Film::Sum.
-constexpr std::array<LayerSum, 7> kLayerSums = {
-    {{{Layer::kNormal}, &LayerSample::normal},
-     {{Layer::kPosition}, &LayerSample::position},
-     {{Layer::kTransmittance}, &LayerSample::transmittance},
-     {kLightLayers, &LayerSample::background},
-     {kLightLayers, &LayerSample::unscattered},
-     {kLightLayers, &LayerSample::at_most_once},
-     {{Layer::kHalves}, nullptr}}};
+constexpr LayerSum kLayerSums[] = {{{Layer::kNormal}, &LayerSample::normal},
+                                   {{Layer::kPosition}, &LayerSample::position},
+                                   {{Layer::kTransmittance}, &LayerSample::transmittance},
+                                   {kLightLayers, &LayerSample::background},
+                                   {kLightLayers, &LayerSample::unscattered},
+                                   {kLightLayers, &LayerSample::at_most_once},
+                                   {{Layer::kHalves}, nullptr}};
 
 }  // namespace
 
@@ -52,7 +51,7 @@ LayerSample& LayerSample::operator+=(const LayerSample& other) {
 }
 
 Film::SumOffsets Film::offsets_of(LayerSet layers, int& count) {
-  static_assert(kLayerSums.size() == kSums);
+  static_assert(std::size(kLayerSums) == kSums);
   SumOffsets offsets;
   offsets.fill(-1);
   count = 0;

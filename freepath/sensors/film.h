@@ -208,7 +208,7 @@ class Film {
 
   /// Sums of three channels each, in sums_ (kLayerSums).
   enum Sum { kNormal, kPosition, kTransmittance, kBackground, kUnscattered, kAtMostOnce, kEven };
-  static constexpr int kSums = 7;
+  static constexpr int kSums = kEven + 1;
   /// Where a pixel has its sums; -1: nowhere.
   using SumOffsets = std::array<int, kSums>;
   static SumOffsets offsets_of(LayerSet layers, int& count);

@@ -19,6 +19,11 @@ class LightReader {
       : context_(context), list_(list), to_world_(to_world) {}
 
   LightDescription read(const PbrtEntity& light) {
+    constexpr EntityKind<LightDescription (LightReader::*)()> kKinds[] = {
+        {"distant", &LightReader::distant},       {"goniometric", &LightReader::goniometric},
+        {"infinite", &LightReader::infinite},     {"point", &LightReader::point},
+        {"projection", &LightReader::projection}, {"spot", &LightReader::spot},
+    };
     const auto make = maker_of(light, "light", kKinds);
     return (this->*make)();
   }
@@ -44,8 +49,6 @@ class LightReader {
   }
 
  private:
-  static const EntityKind<LightDescription (LightReader::*)()> kKinds[6];
-
   std::optional<PortalCorners> portal() {
     const std::vector<Vec3d> corners = list_.get_points("portal");
     if (corners.empty()) return {};
@@ -136,12 +139,6 @@ class LightReader {
   BuildContext& context_;
   const ParameterList& list_;
   Matrix4d to_world_;
-};
-
-const EntityKind<LightDescription (LightReader::*)()> LightReader::kKinds[] = {
-    {"distant", &LightReader::distant},       {"goniometric", &LightReader::goniometric},
-    {"infinite", &LightReader::infinite},     {"point", &LightReader::point},
-    {"projection", &LightReader::projection}, {"spot", &LightReader::spot},
 };
 
 }  // namespace

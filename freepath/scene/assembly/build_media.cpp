@@ -40,15 +40,20 @@ class MediumReader {
                                 "moving media are not supported: this one stands as at the start");
     }
     return at_location(medium_.location, [&] {
+      constexpr EntityKind<SceneMedium (MediumReader::*)(const Box3d&)> kKinds[] = {
+          {"cloud", &MediumReader::cloud},
+          {"homogeneous", &MediumReader::homogeneous},
+          {"uniformgrid", &MediumReader::uniform_grid},
+          {"rgbgrid", &MediumReader::color_grid},
+          {"nanovdb", &MediumReader::volume_file},
+          {"openvdb", &MediumReader::volume_file},
+      };
       const auto make = maker_of(medium_, "medium", kKinds);
       return (this->*make)(extent);
     });
   }
 
  private:
-  using Make = SceneMedium (MediumReader::*)(const Box3d& extent);
-  static const EntityKind<Make> kKinds[6];
-
   const Matrix4d& to_world() const { return medium_.world_from_medium.start; }
 
   SpectralDistribution coefficient(std::string_view name, const SpectralDistribution& otherwise) {
@@ -315,15 +320,6 @@ class MediumReader {
   const PbrtMedium& medium_;
   const ParameterList& list_;
   double largest_ = 0;  // sigma_t
-};
-
-const EntityKind<MediumReader::Make> MediumReader::kKinds[] = {
-    {"cloud", &MediumReader::cloud},
-    {"homogeneous", &MediumReader::homogeneous},
-    {"uniformgrid", &MediumReader::uniform_grid},
-    {"rgbgrid", &MediumReader::color_grid},
-    {"nanovdb", &MediumReader::volume_file},
-    {"openvdb", &MediumReader::volume_file},
 };
 
 }  // namespace
