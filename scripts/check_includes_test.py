@@ -84,6 +84,14 @@ class Includes(Tree):
         self.assert_one("none of the rooms")
 
 
+class Lengths(Tree):
+    def test_a_file_of_more_than_400_lines_is_named(self):
+        self.write("freepath/base/a.h", "\n" * 400)
+        self.assertEqual(self.violations(), [])
+        self.write("freepath/base/a.h", "\n" * 401)
+        self.assert_one("freepath/base/a.h:400:", "more than 400 lines")
+
+
 class Citations(Tree):
     def test_accepts_known_keys_in_all_their_forms(self):
         self.write("freepath/base/a.h", "/// [Kutz17], [Kutz17, Eq. 21], [Galtier13, Kutz17]\n"

@@ -149,10 +149,7 @@ void check_memory(const PixelWindow& window, const FilmPlan& plan,
                   const WavelengthBuckets& buckets) {
   constexpr double kGigabyte = 1e9;
   // The sums of samples, and the picture made of them, which is written from a copy.
-  std::size_t channels = 4 + buckets.count;
-  for (const LayerInfo& info : layer_infos()) {
-    if (plan.written().has(info.layer)) channels += info.channels.size();
-  }
+  std::size_t channels = 4 + buckets.count + channels_of(plan.written()).size();
   if (plan.denoiser) channels += 20;  // its inputs and output, and the noisy picture
   const auto bytes = static_cast<double>(Film::bytes_per_pixel(plan.recorded(), buckets) +
                                          channels * sizeof(float));

@@ -13,6 +13,7 @@
 
 #include "apps/freepath/commands.h"
 #include "apps/freepath/console.h"
+#include "freepath/base/box.h"
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
 #include "freepath/io/volume.h"
@@ -86,16 +87,8 @@ Placement placement_of(const Matrix4d& matrix) {
 
 /// Bounds of the voxels that count, whole voxels, in the world.
 Box3d world_bounds(const GridInfo& info) {
-  Box3d box;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d point;
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] =
-          ((corner >> axis) & 1) != 0 ? info.active_max[axis] + 0.5 : info.active_min[axis] - 0.5;
-    }
-    box.extendBy(point * info.index_to_world);
-  }
-  return box;
+  const Box3d voxels(Vec3d(info.active_min) - Vec3d(0.5), Vec3d(info.active_max) + Vec3d(0.5));
+  return Imath::transform(voxels, info.index_to_world);
 }
 
 std::string size_text(double bytes) {

@@ -183,7 +183,8 @@ void add_volume_options(CLI::App& command, VolumeOptions& o) {
   add("--sigma-s", o.sigma_s, "Scattering per unit of density, V or R,G,B [1/unit]");
   add("--g", o.g, "Mean cosine of the Henyey-Greenstein phase function [0]")->check(kFiniteNumber);
   add("--phase", o.phase,
-      "Phase function: isotropic, henyey-greenstein:g=0.8, rayleigh, draine:g=0.5,alpha=1, "
+      "Phase function: isotropic, henyey-greenstein:g=0.8, rayleigh, draine:g=0.5,alpha=1 (with "
+      "that alpha Cornette and Shanks'), "
       "droplets:diameter=20 [um], tabulated:FILE of angles and values, or a mixture, "
       "0.7*droplets:diameter=10+0.3*rayleigh [isotropic]");
   add("--le", o.radiance,

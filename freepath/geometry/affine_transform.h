@@ -19,6 +19,15 @@ struct AffineTransform {
 
   Vec3d point(const Vec3d& p) const { return x * p.x + y * p.y + z * p.z + translation; }
   Vec3d vector(const Vec3d& v) const { return x * v.x + y * v.y + z * v.z; }
+  /// This map, and another one after it.
+  AffineTransform then(const AffineTransform& next) const {
+    AffineTransform both;
+    both.x = next.vector(x);
+    both.y = next.vector(y);
+    both.z = next.vector(z);
+    both.translation = next.point(translation);
+    return both;
+  }
   /// Takes a normal of B to A, where the map is from A to B. Not normalised.
   Vec3d normal_back(const Vec3d& n) const { return {x.dot(n), y.dot(n), z.dot(n)}; }
   /// Negative where the map swaps handedness.

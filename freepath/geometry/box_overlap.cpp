@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "freepath/base/box.h"
+
 namespace freepath {
 
 namespace {
@@ -23,26 +25,7 @@ Box3d around(std::span<const Vec3d> points, const AffineTransform& map) {
   return box;
 }
 
-/// Larger by more than floats round.
-Box3d padded(const Box3d& box) {
-  double largest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.min[axis]), std::abs(box.max[axis])});
-  }
-  const Vec3d padding(largest * 0x1p-22);
-  return {box.min - padding, box.max + padding};
-}
-
 }  // namespace
-
-std::array<Vec3d, 8> corners_of(const Box3d& box) {
-  std::array<Vec3d, 8> corners;
-  for (int i = 0; i < 8; ++i) {
-    corners[i] = {(i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
-                  (i & 4) != 0 ? box.max.z : box.min.z};
-  }
-  return corners;
-}
 
 bool triangle_meets_box(const std::array<Vec3d, 3>& triangle, const Box3d& box) {
   const Vec3d middle = box.center();
@@ -64,21 +47,18 @@ bool triangle_meets_box(const std::array<Vec3d, 3>& triangle, const Box3d& box) 
   return true;
 }
 
-bool part_meets_box(const TracedPart& part, const AffineTransform& to_world,
+bool part_meets_box(const TracedPart& part, const AffineTransform& to_box,
                     const AffineTransform& to_part, std::span<const uint32_t> shapes,
-                    const Box3d& exact_box) {
-  if (exact_box.isEmpty()) return false;
-  const Box3d box = padded(exact_box);
+                    const Box3d& box) {
   const auto is_wanted = [&](const TracedShape& shape) {
     return std::find(shapes.begin(), shapes.end(), shape.shape) != shapes.end();
   };
   for (const TracedTriangles& mesh : part.triangles) {
-    if (!is_wanted(mesh) || !around(corners_of(mesh.box), to_world).intersects(box)) continue;
+    if (!is_wanted(mesh) || !around(corners_of(mesh.box), to_box).intersects(box)) continue;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-      if (triangle_meets_box(
-              {to_world.point(mesh.position(i)), to_world.point(mesh.position(i + 1)),
-               to_world.point(mesh.position(i + 2))},
-              box)) {
+      if (triangle_meets_box({to_box.point(mesh.position(i)), to_box.point(mesh.position(i + 1)),
+                              to_box.point(mesh.position(i + 2))},
+                             box)) {
         return true;
       }
     }
@@ -87,7 +67,7 @@ bool part_meets_box(const TracedPart& part, const AffineTransform& to_world,
     if (!is_wanted(mesh)) continue;
     for (uint32_t i = 0; i < mesh.count(); ++i) {
       const BilinearPatch p = mesh.patch(i);
-      if (around(std::array{p.p00, p.p10, p.p01, p.p11}, to_world).intersects(box)) return true;
+      if (around(std::array{p.p00, p.p10, p.p01, p.p11}, to_box).intersects(box)) return true;
     }
   }
   std::array<Vec3d, 8> corners = corners_of(box);

@@ -10,14 +10,12 @@
 
 namespace freepath {
 
-std::array<Vec3d, 8> corners_of(const Box3d& box);
-
 /// False only if a plane separates them: that of the triangle, a side of the box, or one along an
 /// edge of each [Akenine01].
 bool triangle_meets_box(const std::array<Vec3d, 3>& corners, const Box3d& box);
 
-/// @param to_world, to_part between the space of the part and that of the box
-bool part_meets_box(const TracedPart& part, const AffineTransform& to_world,
+/// @param to_box,to_part between the space of the part and that of the box
+bool part_meets_box(const TracedPart& part, const AffineTransform& to_box,
                     const AffineTransform& to_part, std::span<const uint32_t> shapes,
                     const Box3d& box);
 

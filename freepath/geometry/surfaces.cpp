@@ -40,15 +40,20 @@ bool count_bytes(void* total, ssize_t bytes, bool /*post*/) {
   return true;
 }
 
+constexpr auto kByPosition = [](const auto& a, const auto& b) {
+  return a.position.is_before(b.position);
+};
+
 }  // namespace
 
 class Surfaces::Data {
  public:
   Data(const SurfaceScene& scene, const Vec3d& ray_origin);
 
-  SurfaceQuery query(QueryKind kind, const Vec3f& origin, const Vec3f& direction, float t_min,
-                     double t_max) const;
-  static RTCRay ray(const Vec3f& origin, const Vec3f& direction, float t_min, float t_max);
+  SurfaceQuery query(QueryKind kind, const Vec3f& origin, const Vec3f& direction, float t_min = 0,
+                     double t_max = std::numeric_limits<double>::infinity()) const;
+  static RTCRay ray(const Vec3f& origin, const Vec3f& direction, float t_min = 0,
+                    float t_max = std::numeric_limits<float>::infinity());
   SurfaceHit describe(const RayPosition& position, float u, float v, const LocalRay& ray) const;
   const TracedPart& part_of(const SurfaceKey& key) const {
     return key.instance == kNoInstance ? *world : *groups[rule.instances[key.instance].group];
@@ -265,8 +270,7 @@ std::optional<SurfaceHit> Surfaces::intersect(const Vec3f& origin, const Vec3f& 
 void Surfaces::find_ties(const Vec3f& origin, const Vec3f& direction, const SurfaceHit& hit,
                          std::vector<TiedSurface>& ties) const {
   ties.clear();
-  SurfaceQuery query =
-      data_->query(QueryKind::kTies, origin, direction, 0, std::numeric_limits<double>::infinity());
+  SurfaceQuery query = data_->query(QueryKind::kTies, origin, direction);
   query.around = &hit.position;
   query.ties = &ties;
   const auto met = data_->meet(hit.position.key, query.ray, hit.position.t);
@@ -276,9 +280,7 @@ void Surfaces::find_ties(const Vec3f& origin, const Vec3f& direction, const Surf
       Data::ray(origin, direction, static_cast<float>(std::max(hit.position.t - range, 0.0)),
                 static_cast<float>(hit.position.t + range));
   rtcOccluded1(data_->scene.get(), &query.context, &ray);
-  std::sort(ties.begin(), ties.end(), [](const TiedSurface& a, const TiedSurface& b) {
-    return a.position.is_before(b.position);
-  });
+  std::sort(ties.begin(), ties.end(), kByPosition);
   std::size_t kept = 0;
   for (const TiedSurface& tied : ties) {
     const auto is_same = [&](uint32_t shape, uint32_t instance, bool enters) {
@@ -337,14 +339,11 @@ bool Surfaces::is_end(const Vec3f& origin, const Vec3f& direction, const RayPosi
 std::vector<BoundaryCrossing> Surfaces::all_crossings(const Vec3f& origin,
                                                       const Vec3f& direction) const {
   std::vector<BoundaryCrossing> all;
-  SurfaceQuery query =
-      data_->query(QueryKind::kAll, origin, direction, 0, std::numeric_limits<double>::infinity());
+  SurfaceQuery query = data_->query(QueryKind::kAll, origin, direction);
   query.all = &all;
-  RTCRay ray = Data::ray(origin, direction, 0, std::numeric_limits<float>::infinity());
+  RTCRay ray = Data::ray(origin, direction);
   rtcOccluded1(data_->scene.get(), &query.context, &ray);
-  std::sort(all.begin(), all.end(), [](const BoundaryCrossing& a, const BoundaryCrossing& b) {
-    return a.position.is_before(b.position);
-  });
+  std::sort(all.begin(), all.end(), kByPosition);
   std::vector<BoundaryCrossing> each;
   for (const BoundaryCrossing& crossing : all) {
     bool is_known = false;
@@ -369,28 +368,29 @@ Vec3f Surfaces::offset_ray_origin(const SurfacePoint& point, const Vec3f& direct
   return p + n * (n.dot(direction) < 0 ? -offset : offset);
 }
 
-bool Surfaces::intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const {
-  const Box3d relative(box.min - data_->origin, box.max - data_->origin);
-  if (part_meets_box(*data_->world, AffineTransform(), AffineTransform(), shapes, relative))
-    return true;
-  return std::any_of(data_->rule.instances.begin(), data_->rule.instances.end(),
-                     [&](const TracedInstance& instance) {
-                       return part_meets_box(*data_->groups[instance.group], instance.part_to_world,
-                                             instance.world_to_part, shapes, relative);
-                     });
+bool Surfaces::intersects_box(std::span<const uint32_t> shapes, const OrientedBox& exact) const {
+  if (exact.box().isEmpty()) return false;
+  // By more than floats round.
+  const OrientedBox box = exact.grown_by(exact.farthest_coordinate(data_->origin) * 0x1p-22);
+  const Matrix4d to_box = Matrix4d().setTranslation(data_->origin) * box.to_world().inverse();
+  const AffineTransform from_scene(to_box), to_scene(to_box.inverse());
+  const auto meets = [&](const TracedPart& part, const AffineTransform& part_to_world,
+                         const AffineTransform& world_to_part) {
+    return part_meets_box(part, part_to_world.then(from_scene), to_scene.then(world_to_part),
+                          shapes, box.box());
+  };
+  if (meets(*data_->world, {}, {})) return true;
+  return std::ranges::any_of(data_->rule.instances, [&](const TracedInstance& instance) {
+    return meets(*data_->groups[instance.group], instance.part_to_world, instance.world_to_part);
+  });
 }
 
 bool Surfaces::is_inside(const Vec3f& point, std::span<const uint32_t> shapes) const {
-  // Along no edge of anything that is built along axes or diagonals.
-  static const std::array<Vec3f, 3> kDirections = {Vec3f(0.5377F, 0.6211F, 0.5703F),
-                                                   Vec3f(-0.7321F, 0.3187F, -0.6021F),
-                                                   Vec3f(0.2239F, -0.8623F, -0.4541F)};
   int votes = 0;
-  for (const Vec3f& direction : kDirections) {
-    SurfaceQuery query = data_->query(QueryKind::kCount, point, direction, 0,
-                                      std::numeric_limits<double>::infinity());
+  for (const Vec3f& direction : kProbes) {
+    SurfaceQuery query = data_->query(QueryKind::kCount, point, direction);
     query.counted = shapes;
-    RTCRay ray = Data::ray(point, direction, 0, std::numeric_limits<float>::infinity());
+    RTCRay ray = Data::ray(point, direction);
     rtcOccluded1(data_->scene.get(), &query.context, &ray);
     votes += static_cast<int>(query.count % 2);
   }

@@ -1,12 +1,14 @@
 #pragma once
 /// @file The surfaces of a scene, to be met by rays.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/base/vector.h"
 #include "freepath/geometry/boundary_crossings.h"
 #include "freepath/geometry/ray_position.h"
@@ -112,7 +114,13 @@ class Surfaces {
   /// has. Looks at every triangle: for the time of loading.
   /// @param shapes SurfaceShape::shape
   /// @param box [world, not relative to the origin]
-  bool intersects_box(std::span<const uint32_t> shapes, const Box3d& box) const;
+  bool intersects_box(std::span<const uint32_t> shapes, const OrientedBox& box) const;
+
+  /// Directions along no edge of anything that is built along axes or diagonals, of rays that vote
+  /// on what is around a point.
+  static inline const std::array<Vec3f, 3> kProbes = {Vec3f(0.5377F, 0.6211F, 0.5703F),
+                                                      Vec3f(-0.7321F, 0.3187F, -0.6021F),
+                                                      Vec3f(0.2239F, -0.8623F, -0.4541F)};
 
   /// Whether these shapes together enclose the point, whichever way their normals point: by the
   /// parity of crossings, three rays voting. Of use for closed shapes alone.

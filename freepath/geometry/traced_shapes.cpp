@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "freepath/base/box.h"
 #include "freepath/base/tangent_frame.h"
 
 namespace freepath {
@@ -191,12 +192,9 @@ LocalPoint TracedQuadric::describe(const Vec3d& near_surface) const {
 }
 
 Box3d TracedQuadric::bounds() const {
-  const Box3d object = quadric.bounds();
   Box3d around;
-  for (int corner = 0; corner < 8; ++corner) {
-    around.extendBy(object_to_part.point({(corner & 1) != 0 ? object.max.x : object.min.x,
-                                          (corner & 2) != 0 ? object.max.y : object.min.y,
-                                          (corner & 4) != 0 ? object.max.z : object.min.z}));
+  for (const Vec3d& corner : corners_of(quadric.bounds())) {
+    around.extendBy(object_to_part.point(corner));
   }
   return around;
 }

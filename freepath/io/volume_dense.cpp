@@ -301,6 +301,12 @@ VolumeReaderPointer make_dense_reader(const VolumeFile& file, std::vector<DenseG
   return std::make_unique<DenseReader>(file, std::move(grids));
 }
 
+VolumeReaderPointer make_dense_reader(const VolumeFile& file, DenseGrid grid) {
+  std::vector<DenseGrid> grids;
+  grids.push_back(std::move(grid));
+  return make_dense_reader(file, std::move(grids));
+}
+
 void set_voxel_type(std::optional<NumberType> type, std::string_view type_name, int components,
                     DenseGrid& grid) {
   GridInfo& info = grid.info;
@@ -367,6 +373,13 @@ PlaneSourcePointer number_planes(ByteSourcePointer bytes, const StoredNumbers& n
 
 PlaneSourcePointer text_planes(ByteSourcePointer text) {
   return std::make_unique<TextPlanes>(std::move(text));
+}
+
+PlaneSourcePointer file_planes(const VolumeFile& file, uint64_t begin, DensePacking packing,
+                               const StoredNumbers& numbers) {
+  if (packing == DensePacking::kText) return text_planes(file_bytes(file, begin));
+  const bool packed = packing == DensePacking::kDeflate;
+  return number_planes(packed ? gzip_bytes(file, begin) : file_bytes(file, begin), numbers);
 }
 
 }  // namespace freepath::io

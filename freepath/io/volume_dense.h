@@ -51,6 +51,8 @@ struct DenseGrid {
 /// A reader of such grids. Voxels that are 0 are inactive, all others active.
 /// @param file must outlive it
 VolumeReaderPointer make_dense_reader(const VolumeFile& file, std::vector<DenseGrid> grids);
+/// A reader of one grid.
+VolumeReaderPointer make_dense_reader(const VolumeFile& file, DenseGrid grid);
 
 /// Completes a grid: sets channels and type from the numbers in a voxel and, if the grid can't be
 /// loaded, the reason why.
@@ -92,5 +94,12 @@ PlaneSourcePointer number_planes(ByteSourcePointer bytes, const StoredNumbers& n
 
 /// Planes of numbers as text, blanks or commas between them.
 PlaneSourcePointer text_planes(ByteSourcePointer text);
+
+/// Planes of the rest of a file, as it is packed.
+/// @param file must outlive them
+/// @param packing not kUnknown
+/// @param numbers how binary ones are stored
+PlaneSourcePointer file_planes(const VolumeFile& file, uint64_t begin, DensePacking packing,
+                               const StoredNumbers& numbers);
 
 }  // namespace freepath::io

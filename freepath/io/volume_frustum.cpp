@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "freepath/base/box.h"
 #include "freepath/base/error.h"
 
 namespace freepath::io {
@@ -26,11 +27,7 @@ struct LinearGrid {
 /// The grid around a box of index points.
 LinearGrid linear_grid(const FrustumMap& map, const Vec3d& low, const Vec3d& high) {
   Box3d box;
-  for (int corner = 0; corner < 8; ++corner) {
-    box.extendBy(
-        map.to_frustum(Vec3d((corner & 4) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                             (corner & 1) != 0 ? high.z : low.z)));
-  }
+  for (const Vec3d& corner : corners_of({low, high})) box.extendBy(map.to_frustum(corner));
   double edge = std::numeric_limits<double>::infinity();
   for (const double z : {(low.z - map.origin.z) * map.step, (high.z - map.origin.z) * map.step}) {
     const double here = map.edge(z);

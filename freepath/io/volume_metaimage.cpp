@@ -156,21 +156,18 @@ VolumeReaderPointer open_metaimage(const VolumeFile& file) {
   const auto detached = meta_data_file(header);
   const VolumeFile& data = detached ? *detached : file;
   const std::size_t voxel_bytes = size_of(*type) * static_cast<std::size_t>(components);
-  check_dense_size(data, grid.counts, voxel_bytes,
-                   !binary  ? DensePacking::kText
-                   : packed ? DensePacking::kDeflate
-                            : DensePacking::kNone);
+  const DensePacking packing = !binary  ? DensePacking::kText
+                               : packed ? DensePacking::kDeflate
+                                        : DensePacking::kNone;
+  check_dense_size(data, grid.counts, voxel_bytes, packing);
   const uint64_t bytes = dense_bytes(grid.counts, voxel_bytes);
   const uint64_t begin = meta_begin(header, data, detached ? 0 : header.end(), packed, bytes);
   data.require(begin, binary && !packed ? bytes : 0);
   grid.info.stored_bytes = binary && !packed ? bytes : data.size() - begin;
-  grid.open = [&data, detached, begin, numbers, binary, packed](const GridInfo& /*head*/) {
-    if (!binary) return text_planes(file_bytes(data, begin));
-    return number_planes(packed ? gzip_bytes(data, begin) : file_bytes(data, begin), numbers);
+  grid.open = [&data, detached, begin, packing, numbers](const GridInfo& /*head*/) {
+    return file_planes(data, begin, packing, numbers);
   };
-  std::vector<DenseGrid> grids;
-  grids.push_back(std::move(grid));
-  return make_dense_reader(file, std::move(grids));
+  return make_dense_reader(file, std::move(grid));
 }
 
 }  // namespace freepath::io

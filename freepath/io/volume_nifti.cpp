@@ -292,9 +292,7 @@ VolumeReaderPointer open_nifti(const VolumeFile& file, bool packed) {
     const uint64_t offset = first + static_cast<uint64_t>(head.time) * bytes;
     return number_planes(nifti_bytes(file, packed, offset), numbers);
   };
-  std::vector<DenseGrid> grids;
-  grids.push_back(std::move(grid));
-  return make_dense_reader(file, std::move(grids));
+  return make_dense_reader(file, std::move(grid));
 }
 
 }  // namespace freepath::io

@@ -275,9 +275,8 @@ VolumeReaderPointer open_nrrd(const VolumeFile& file) {
   grid.info.index_to_world =
       directions ? nrrd_space(header, axes, *directions) : nrrd_steps(header, axes);
   grid.info.length_unit = nrrd_length_unit(header, axes);
-  const bool binary = raw || packed;
   StoredNumbers numbers{*type, std::endian::little};
-  if (binary && size_of(*type) > 1) {
+  if ((raw || packed) && size_of(*type) > 1) {
     const std::string order = lower_case(header.get({"endian"}));
     if (order != "little" && order != "big") {
       fail("{}: its endian '{}' is neither little nor big; correct it", file.name(),
@@ -288,21 +287,18 @@ VolumeReaderPointer open_nrrd(const VolumeFile& file) {
   const auto detached = nrrd_data_file(header);
   const VolumeFile& data = detached ? *detached : file;
   const std::size_t voxel_bytes = size_of(*type) * static_cast<std::size_t>(axes.components);
-  check_dense_size(data, grid.counts, voxel_bytes,
-                   raw      ? DensePacking::kNone
-                   : packed ? DensePacking::kDeflate
-                            : DensePacking::kText);
+  const DensePacking packing = raw      ? DensePacking::kNone
+                               : packed ? DensePacking::kDeflate
+                                        : DensePacking::kText;
+  check_dense_size(data, grid.counts, voxel_bytes, packing);
   const uint64_t bytes = dense_bytes(grid.counts, voxel_bytes);
   const uint64_t begin = nrrd_begin(header, data, detached ? 0 : header.end(), raw, bytes);
   if (raw) data.require(begin, bytes);
   grid.info.stored_bytes = raw ? bytes : data.size() - begin;
-  grid.open = [&data, detached, begin, numbers, binary, packed](const GridInfo& /*head*/) {
-    if (!binary) return text_planes(file_bytes(data, begin));
-    return number_planes(packed ? gzip_bytes(data, begin) : file_bytes(data, begin), numbers);
+  grid.open = [&data, detached, begin, packing, numbers](const GridInfo& /*head*/) {
+    return file_planes(data, begin, packing, numbers);
   };
-  std::vector<DenseGrid> grids;
-  grids.push_back(std::move(grid));
-  return make_dense_reader(file, std::move(grids));
+  return make_dense_reader(file, std::move(grid));
 }
 
 }  // namespace freepath::io

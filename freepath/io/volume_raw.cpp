@@ -60,9 +60,7 @@ VolumeReaderPointer open_raw(const VolumeFile& file, const RawLayout& layout) {
                numbers = StoredNumbers{type, layout.order}](const GridInfo& /*head*/) {
     return number_planes(file_bytes(file, offset), numbers);
   };
-  std::vector<DenseGrid> grids;
-  grids.push_back(std::move(grid));
-  return make_dense_reader(file, std::move(grids));
+  return make_dense_reader(file, std::move(grid));
 }
 
 std::filesystem::path raw_header_beside(const std::filesystem::path& path) {

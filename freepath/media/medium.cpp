@@ -337,22 +337,31 @@ Box3d Medium::world_bounds() const { return bounds_with(0.5); }
 
 Box3d Medium::outer_bounds() const { return bounds_with(1); }
 
+OrientedBox Medium::outer_box() const {
+  const Field& first = *components_[0].density;
+  if (first.function || first.index_to_world.determinant() == 0) return outer_bounds();
+  const Matrix4d from_world = first.index_to_world.inverse();
+  Box3d box;
+  for (const Component& component : components_) {
+    box.extendBy(Imath::transform(box_of_voxels(component.density->voxels, 1),
+                                  component.density->index_to_world * from_world));
+  }
+  return {box, first.index_to_world};
+}
+
+Box3d Medium::box_of_voxels(const BrickMap& map, double filter) const {
+  const Vec3d reach(std::min(reach_, filter));
+  return {Vec3d(map.active_min()) - reach, Vec3d(map.active_max()) + reach};
+}
+
 Box3d Medium::bounds_with(double filter) const {
   if (const auto& function = components_[0].density->function) {
     return {Vec3d(function->box.min), Vec3d(function->box.max)};
   }
   Box3d box;
-  const double reach = std::min(reach_, filter);
   for (const Component& component : components_) {
-    const BrickMap& map = component.density->voxels;
-    for (int corner = 0; corner < 8; ++corner) {
-      Vec3d point;
-      for (int axis = 0; axis < 3; ++axis) {
-        point[axis] = (corner >> axis & 1) != 0 ? map.active_max()[axis] + reach
-                                                : map.active_min()[axis] - reach;
-      }
-      box.extendBy(point * component.density->index_to_world);
-    }
+    box.extendBy(Imath::transform(box_of_voxels(component.density->voxels, filter),
+                                  component.density->index_to_world));
   }
   return box;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/base/rgb.h"
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
@@ -128,6 +129,8 @@ class Medium {
   /// Bounds of the active voxels with the part over which filters let the densities fade beyond
   /// their faces [world].
   Box3d outer_bounds() const;
+  /// The same along the axes of the first component's voxels, where these can be told.
+  OrientedBox outer_box() const;
 
   /// Whether every component's extinction is the same in all channels, so that one path can carry
   /// them all.
@@ -139,6 +142,7 @@ class Medium {
  private:
   /// @param filter how far beyond the outermost voxels' middles it would reach [voxels]
   Box3d bounds_with(double filter) const;
+  Box3d box_of_voxels(const BrickMap& map, double filter) const;
   std::vector<const Field*> fields() const;
   void build_from_voxels(int super_voxel);
   void build_from_functions();

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "freepath/base/box.h"
+
 namespace freepath {
 namespace {
 
@@ -113,13 +115,7 @@ Matrix4d to_window(const WalkPart& part, const Matrix4d& grid_to_field, const Br
 
 BrickWindow window_of(const BrickMap& map, const GridBox& box, const Matrix4d& grid_to_field) {
   if (!map.is_sparse()) return map.window();
-  Box3d image;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d point((corner & 1) != 0 ? box.end.x : box.begin.x,
-                      (corner & 2) != 0 ? box.end.y : box.begin.y,
-                      (corner & 4) != 0 ? box.end.z : box.begin.z);
-    image.extendBy(point * grid_to_field);
-  }
+  const Box3d image = Imath::transform(Box3d(Vec3d(box.begin), Vec3d(box.end)), grid_to_field);
   // Within the map, at whose border all is empty, or a brick of that.
   const Vec3i origin = map.origin() / BrickMap::kBrickSize;
   Vec3i begin;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "freepath/base/box.h"
 #include "freepath/base/error.h"
 
 namespace freepath {
@@ -50,17 +51,6 @@ Box3d active_box(const Field& field, double reach) {
           Vec3d(field.voxels.active_max()) + Vec3d(reach)};
 }
 
-Vec3d corner_of(const Box3d& box, int corner) {
-  return {(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
-          (corner & 4) != 0 ? box.max.z : box.min.z};
-}
-
-Box3d transformed(const Box3d& box, const Matrix4d& matrix) {
-  Box3d result;
-  for (int corner = 0; corner < 8; ++corner) result.extendBy(corner_of(box, corner) * matrix);
-  return result;
-}
-
 void check_lengths(std::span<const Field* const> fields) {
   for (const Field* field : fields) {
     const Vec3i& bricks = field->voxels.brick_counts();
@@ -86,7 +76,7 @@ void check_extent(const Box3d& bounds, const WalkSpace& space, std::span<const F
                   const Field& finest, int most) {
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const Matrix4d map = index_to_index(space.index_to_world, fields[k]->index_to_world);
-    const Vec3d size = transformed(bounds, map).size();
+    const Vec3d size = Imath::transform(bounds, map).size();
     const Vec3d own = bounds.size();
     const double longest = std::max({size.x, size.y, size.z, own.x, own.y, own.z});
     if (longest <= most) continue;
@@ -115,8 +105,8 @@ WalkSpace common_space(std::span<const Field* const> fields) {
   space.index_to_world = finest.index_to_world;
   Box3d bounds;
   for (const Field* field : fields) {
-    bounds.extendBy(transformed(active_box(*field, 1),
-                                index_to_index(field->index_to_world, space.index_to_world)));
+    bounds.extendBy(Imath::transform(active_box(*field, 1),
+                                     index_to_index(field->index_to_world, space.index_to_world)));
   }
   check_extent(bounds, space, fields, finest, kMostVoxels);
   constexpr double kRounding = 1e-3;  // of bounds that are whole voxels; one is to spare
@@ -169,9 +159,10 @@ Box3d WalkSpace::bounds(std::span<const Field* const> fields, double reach) cons
   Box3d box;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const Vec3i& first = fields[k]->voxels.origin();
-    const Box3d covered = transformed(active_box(*fields[k], reach), index_to_grid(first));
-    box.extendBy(to_component[k] == Matrix4d() ? covered
-                                               : transformed(covered, to_component[k].inverse()));
+    const Box3d covered = Imath::transform(active_box(*fields[k], reach), index_to_grid(first));
+    box.extendBy(to_component[k] == Matrix4d()
+                     ? covered
+                     : Imath::transform(covered, to_component[k].inverse()));
   }
   return box;
 }
@@ -181,7 +172,7 @@ std::vector<GridBox> WalkSpace::occupied(std::span<const Field* const> fields) c
   std::vector<GridBox> boxes;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const BrickMap& map = fields[k]->voxels;
-    const Box3d active = transformed(active_box(*fields[k], 1.5), index_to_grid(map.origin()));
+    const Box3d active = Imath::transform(active_box(*fields[k], 1.5), index_to_grid(map.origin()));
     const Matrix4d from_component = to_component[k].inverse();
     map.for_each_brick([&](const PlacedBrick& placed) {
       const Vec3d first(placed.coord * BrickMap::kBrickSize - map.origin());
@@ -193,7 +184,7 @@ std::vector<GridBox> WalkSpace::occupied(std::span<const Field* const> fields) c
         if (!(covered.min[axis] < covered.max[axis])) return;
       }
       if (!aligned)
-        covered = transformed(covered, from_component);
+        covered = Imath::transform(covered, from_component);
       else
         covered = {covered.min + from_component.translation(),
                    covered.max + from_component.translation()};

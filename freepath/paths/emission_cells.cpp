@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/media/density_function.h"
 #include "freepath/media/voxel_range.h"
 
@@ -47,18 +48,6 @@ AffineMap to_map(const Matrix4d& matrix) {
   return map;
 }
 
-Box3d transformed(const Box3d& box, const Matrix4d& matrix) {
-  Box3d result;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d point;
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = (corner >> axis & 1) != 0 ? box.max[axis] : box.min[axis];
-    }
-    result.extendBy(point * matrix);
-  }
-  return result;
-}
-
 /// A field, to be read at points of the grid.
 class PlacedField {
  public:
@@ -84,7 +73,7 @@ class PlacedField {
   ValueRange range(const Box3d& box) const {
     ValueRange range;
     if (field_->function) {
-      const Box3d world = transformed(box, to_world_);
+      const Box3d world = Imath::transform(box, to_world_);
       Box3f part = field_->function->box;
       for (int axis = 0; axis < 3; ++axis) {
         part.min[axis] = std::max(part.min[axis], static_cast<float>(world.min[axis]));
@@ -94,7 +83,7 @@ class PlacedField {
       range.add({low, high});
       return range;
     }
-    const Box3d voxels = transformed(box, to_voxels_);
+    const Box3d voxels = Imath::transform(box, to_voxels_);
     Vec3i begin;
     Vec3i end;
     for (int axis = 0; axis < 3; ++axis) {
@@ -300,7 +289,7 @@ struct GridMaker {
       cells.extendBy(Vec3d(grid.cell(i)));
       cells.extendBy(Vec3d(grid.cell(i) + Vec3i(1)));
     }
-    return cells.isEmpty() ? cells : transformed(cells, grid_to_walk(box, counts));
+    return cells.isEmpty() ? cells : Imath::transform(cells, grid_to_walk(box, counts));
   }
 };
 

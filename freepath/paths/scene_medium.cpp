@@ -52,13 +52,7 @@ SceneMedium::SceneMedium(std::string name, std::shared_ptr<const Medium> medium,
 
 SceneMedium::SceneMedium(std::string name, std::shared_ptr<const ColorVoxels> voxels)
     : name_(std::move(name)), colors_(std::move(voxels)), phases_{colors_->phase} {
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d point;
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = (corner >> axis & 1) != 0 ? colors_->counts[axis] - 0.5 : -0.5;
-    }
-    bounds_.extendBy(point * colors_->index_to_world);
-  }
+  bounds_ = outer_box().bounds();
 }
 
 BoundMedium SceneMedium::bind(const SpectrumValues& spectra) const {
@@ -126,6 +120,11 @@ BoundMedium SceneMedium::bind_colors(const SpectrumValues& spectra) const {
 }
 
 Box3d SceneMedium::outer_bounds() const { return medium_ ? medium_->outer_bounds() : bounds_; }
+
+OrientedBox SceneMedium::outer_box() const {
+  if (medium_) return medium_->outer_box();
+  return {Box3d(Vec3d(-0.5), Vec3d(colors_->counts) - Vec3d(0.5)), colors_->index_to_world};
+}
 
 std::size_t SceneMedium::bytes_of_set(int wavelengths) const {
   if (!colors_) return 0;

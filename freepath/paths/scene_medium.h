@@ -89,6 +89,8 @@ class SceneMedium {
   /// The box beyond which it is nowhere, whatever filter its voxels are read by [world]: what it
   /// fills and, if it is not cut off there, half a voxel more.
   Box3d outer_bounds() const;
+  /// The same along the axes of its voxels.
+  OrientedBox outer_box() const;
   /// Null where voxels depend on wavelengths.
   const std::shared_ptr<const Medium>& medium() const { return medium_; }
   const std::vector<SceneMediumComponent>& components() const { return components_; }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/base/error.h"
 #include "freepath/media/brick_map.h"
 
@@ -18,16 +19,13 @@ void add_occupied_corners(const Field& field, std::vector<Vec3d>& corners) {
   const BrickMap& map = field.voxels;
   const auto add_brick = [&](const Vec3i& coord) {
     const Vec3i first = coord * BrickMap::kBrickSize;
-    for (int corner = 0; corner < 8; ++corner) {
-      Vec3d point;
-      for (int axis = 0; axis < 3; ++axis) {
-        point[axis] =
-            (corner >> axis & 1) != 0
-                ? std::min(first[axis] + BrickMap::kBrickSize - 1, map.active_max()[axis]) + 0.5
-                : std::max(first[axis], map.active_min()[axis]) - 0.5;
-      }
-      corners.push_back(point * field.index_to_world);
+    Box3d bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int end = first[axis] + BrickMap::kBrickSize - 1;
+      bounds.min[axis] = std::max(first[axis], map.active_min()[axis]) - 0.5;
+      bounds.max[axis] = std::min(end, map.active_max()[axis]) + 0.5;
     }
+    for (const Vec3d& corner : corners_of(bounds)) corners.push_back(corner * field.index_to_world);
   };
   std::optional<Vec3i> last;  // of the row so far
   map.for_each_brick([&](const PlacedBrick& placed) {

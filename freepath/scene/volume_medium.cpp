@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/base/error.h"
 #include "freepath/media/walk_space.h"
 #include "freepath/spectra/rgb_color_space.h"
@@ -87,14 +88,7 @@ constexpr double kLargestOpticalDepth = 4e6;
 /// Length across a part of a medium [world].
 double length_of(const Medium& medium, const WalkPart& part) {
   const Matrix4d to_world = medium.world_to_grid().inverse();
-  Box3d box;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3d position;
-    for (int axis = 0; axis < 3; ++axis) {
-      position[axis] = (corner >> axis & 1) != 0 ? part.box.end[axis] : part.box.begin[axis];
-    }
-    box.extendBy(position * to_world);
-  }
+  const Box3d box = Imath::transform(Box3d(Vec3d(part.box.begin), Vec3d(part.box.end)), to_world);
   return std::min(box.size().length(), medium.world_bounds().size().length());
 }
 

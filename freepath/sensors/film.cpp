@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "freepath/base/error.h"
 #include "freepath/base/moments.h"
@@ -24,25 +27,39 @@ float to_float(double value) {
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
 }
 
+/// A sum that layers are made of.
+struct LayerSum {
+  LayerSet layers;            ///< Any of these needs it.
+  Rgb LayerSample::*of_path;  ///< What paths add; null: nothing that they find for layers alone.
+};
+/// In the order of Film::Sum.
+constexpr LayerSum kLayerSums[] = {{{Layer::kNormal}, &LayerSample::normal},
+                                   {{Layer::kPosition}, &LayerSample::position},
+                                   {{Layer::kTransmittance}, &LayerSample::transmittance},
+                                   {kLightLayers, &LayerSample::background},
+                                   {kLightLayers, &LayerSample::unscattered},
+                                   {kLightLayers, &LayerSample::at_most_once},
+                                   {{Layer::kHalves}, nullptr}};
+
 }  // namespace
 
+LayerSample& LayerSample::operator+=(const LayerSample& other) {
+  for (const LayerSum& sum : kLayerSums) {
+    if (sum.of_path != nullptr) this->*sum.of_path += other.*sum.of_path;
+  }
+  return *this;
+}
+
 Film::SumOffsets Film::offsets_of(LayerSet layers, int& count) {
+  static_assert(std::size(kLayerSums) == kSums);
   SumOffsets offsets;
   offsets.fill(-1);
   count = 0;
-  const auto reserve = [&](Sum sum, bool wanted) {
-    if (!wanted) return;
+  for (int sum = 0; sum < kSums; ++sum) {
+    if (!layers.has_any(kLayerSums[sum].layers)) continue;
     offsets[sum] = count;
     count += kChannels;
-  };
-  const bool light = layers.has_any(kLightLayers);
-  reserve(kNormal, layers.has(Layer::kNormal));
-  reserve(kPosition, layers.has(Layer::kPosition));
-  reserve(kTransmittance, layers.has(Layer::kTransmittance));
-  reserve(kBackground, light);
-  reserve(kUnscattered, light);
-  reserve(kAtMostOnce, light);
-  reserve(kEven, layers.has(Layer::kHalves));
+  }
   return offsets;
 }
 
@@ -110,12 +127,10 @@ void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& l
 }
 
 void Film::add_layers(std::size_t pixel, const LayerSample& sample) {
-  add_to(pixel, kNormal, sample.normal);
-  add_to(pixel, kPosition, sample.position);
-  add_to(pixel, kTransmittance, sample.transmittance);
-  add_to(pixel, kBackground, sample.background);
-  add_to(pixel, kUnscattered, sample.unscattered);
-  add_to(pixel, kAtMostOnce, sample.at_most_once);
+  for (int sum = 0; sum < kSums; ++sum) {
+    Rgb LayerSample::*const found = kLayerSums[sum].of_path;
+    if (found != nullptr) add_to(pixel, static_cast<Sum>(sum), sample.*found);
+  }
 }
 
 void Film::add_spectrum(std::size_t pixel, std::span<const double> wavelengths,
@@ -293,12 +308,8 @@ Image Film::to_image(LayerSet layers) const {
   image.full_height = window_.full_height;
   image.chromaticities = chromaticities_;
   image.channels = {"R", "G", "B", "A"};
-  std::vector<Layer> chosen;
-  for (const LayerInfo& info : layer_infos()) {
-    if (!layers.has(info.layer) || !layers_.has(info.layer)) continue;
-    chosen.push_back(info.layer);
-    image.channels.insert(image.channels.end(), info.channels.begin(), info.channels.end());
-  }
+  layers = layers.common(layers_);
+  for (std::string& channel : channels_of(layers)) image.channels.push_back(std::move(channel));
   for (int i = 0; i < buckets_.count; ++i) image.channels.push_back(buckets_.channel(i));
   image.values.reserve(pixels_.size() * image.channels.size());
   for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
@@ -306,7 +317,9 @@ Image Film::to_image(LayerSet layers) const {
     const double n = std::max(1U, sums.samples);
     for (int c = 0; c < kChannels; ++c) image.values.push_back(to_float(mean(pixel, c)));
     image.values.push_back(to_float(sums.value(kAlpha) / n));
-    for (const Layer layer : chosen) put_layer(layer, pixel, image.values);
+    for (const LayerInfo& info : layer_infos()) {
+      if (layers.has(info.layer)) put_layer(info.layer, pixel, image.values);
+    }
     for (int i = 0; i < buckets_.count; ++i) {
       const BucketSum& sum = bucket_sums_[pixel * buckets_.count + i];
       const double radiance = Sum2::value(sum.radiance, sum.top);

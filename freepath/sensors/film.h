@@ -43,15 +43,7 @@ struct LayerSample {
   Rgb at_most_once{0.0F};  ///< Scattered at most once.
 
   /// Adds what another channel's path of the same sample has found.
-  LayerSample& operator+=(const LayerSample& other) {
-    normal += other.normal;
-    position += other.position;
-    transmittance += other.transmittance;
-    background += other.background;
-    unscattered += other.unscattered;
-    at_most_once += other.at_most_once;
-    return *this;
-  }
+  LayerSample& operator+=(const LayerSample& other);
 };
 
 /// Samples of pixels, by their numbers: [first, first + count); of rounds, where pixels take
@@ -214,9 +206,9 @@ class Film {
     return tops;
   }
 
-  /// Sums of three channels each, in sums_.
+  /// Sums of three channels each, in sums_ (kLayerSums).
   enum Sum { kNormal, kPosition, kTransmittance, kBackground, kUnscattered, kAtMostOnce, kEven };
-  static constexpr int kSums = 7;
+  static constexpr int kSums = kEven + 1;
   /// Where a pixel has its sums; -1: nowhere.
   using SumOffsets = std::array<int, kSums>;
   static SumOffsets offsets_of(LayerSet layers, int& count);

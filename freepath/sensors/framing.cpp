@@ -1,7 +1,6 @@
 #include "freepath/sensors/framing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "freepath/base/error.h"
@@ -62,17 +61,6 @@ View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double a
       std::max((right + left) / (2 * extent_x), (top + bottom) / (2 * extent_y));
   const Vec3d at = centre + axes.right * ((right - left) / 2) + axes.up * ((top - bottom) / 2);
   return {at + axes.back * distance, at, up_world, fov};
-}
-
-View frame_box(const Box3d& bounds, UpAxis up, double fov, double aspect) {
-  std::array<Vec3d, 8> corners;
-  for (int corner = 0; corner < 8; ++corner) {
-    corners[corner] = {(corner & 1) != 0 ? bounds.max.x : bounds.min.x,
-                       (corner & 2) != 0 ? bounds.max.y : bounds.min.y,
-                       (corner & 4) != 0 ? bounds.max.z : bounds.min.z};
-  }
-  if (bounds.isEmpty()) return frame_points({}, up, fov, aspect);
-  return frame_points(corners, up, fov, aspect);
 }
 
 }  // namespace freepath

@@ -9,9 +9,9 @@
 
 namespace freepath {
 
-/// The line of sight that frame_box chooses: the camera stands in the south-south-east (the
-/// azimuths are those of sky_direction) and a little below the middle of the box, so that it looks
-/// up to it as one does to a cloud.
+/// The line of sight that frame_points chooses: the camera stands in the south-south-east (the
+/// azimuths are those of sky_direction) and a little below the middle of the points, so that it
+/// looks up to it as one does to a cloud.
 inline constexpr double kFramingAzimuth = 150;    // [degrees]
 inline constexpr double kFramingElevation = -12;  // [degrees]
 
@@ -24,13 +24,5 @@ inline constexpr double kFramingElevation = -12;  // [degrees]
 ///   aspect that is not positive
 View frame_points(std::span<const Vec3d> points, UpAxis up, double fov, double aspect,
                   double elevation = kFramingElevation);
-
-/// A view of the whole box, as close as that allows but for a margin of 5 % of the picture.
-/// @param bounds what to show [world]
-/// @param fov vertical angle of view [degrees]
-/// @param aspect width / height of the film
-/// @throws Error for an empty or infinite box, an angle not in (0, 180), an aspect that is not
-///   positive
-View frame_box(const Box3d& bounds, UpAxis up, double fov, double aspect);
 
 }  // namespace freepath

@@ -1,7 +1,7 @@
 #include "freepath/sensors/layers.h"
 
-#include <algorithm>
-#include <vector>
+#include <iterator>
+#include <sstream>
 
 #include "freepath/base/error.h"
 #include "freepath/base/nearest_name.h"
@@ -9,36 +9,21 @@
 namespace freepath {
 namespace {
 
-using Names = std::string_view;
-
-constexpr Names kAlbedo[] = {"albedo.R", "albedo.G", "albedo.B"};
-constexpr Names kDepth[] = {"depth.Z"};
-constexpr Names kLookups[] = {"lookups"};
-constexpr Names kVariance[] = {"variance.R", "variance.G", "variance.B"};
-constexpr Names kSamples[] = {"samples"};
-constexpr Names kNormal[] = {"normal.X", "normal.Y", "normal.Z"};
-constexpr Names kPosition[] = {"position.X", "position.Y", "position.Z"};
-constexpr Names kTransmittance[] = {"transmittance.R", "transmittance.G", "transmittance.B"};
-constexpr Names kEmission[] = {"emission.R", "emission.G", "emission.B"};
-constexpr Names kBackground[] = {"background.R", "background.G", "background.B"};
-constexpr Names kDirect[] = {"direct.R", "direct.G", "direct.B"};
-constexpr Names kIndirect[] = {"indirect.R", "indirect.G", "indirect.B"};
-constexpr Names kHalves[] = {"A.R", "A.G", "A.B", "B.R", "B.G", "B.B"};
-
 constexpr std::array<LayerInfo, kLayers> kInfos{
-    LayerInfo{Layer::kAlbedo, "albedo", kAlbedo},
-    LayerInfo{Layer::kDepth, "depth", kDepth},
-    LayerInfo{Layer::kLookups, "lookups", kLookups},
-    LayerInfo{Layer::kVariance, "variance", kVariance},
-    LayerInfo{Layer::kSamples, "samples", kSamples},
-    LayerInfo{Layer::kNormal, "normal", kNormal},
-    LayerInfo{Layer::kPosition, "position", kPosition},
-    LayerInfo{Layer::kTransmittance, "transmittance", kTransmittance},
-    LayerInfo{Layer::kEmission, "emission", kEmission},
-    LayerInfo{Layer::kBackground, "background", kBackground},
-    LayerInfo{Layer::kDirect, "direct", kDirect},
-    LayerInfo{Layer::kIndirect, "indirect", kIndirect},
-    LayerInfo{Layer::kHalves, "halves", kHalves}};
+    LayerInfo{Layer::kAlbedo, "albedo", "albedo.R albedo.G albedo.B"},
+    LayerInfo{Layer::kDepth, "depth", "depth.Z"},
+    LayerInfo{Layer::kLookups, "lookups", "lookups"},
+    LayerInfo{Layer::kVariance, "variance", "variance.R variance.G variance.B"},
+    LayerInfo{Layer::kSamples, "samples", "samples"},
+    LayerInfo{Layer::kNormal, "normal", "normal.X normal.Y normal.Z"},
+    LayerInfo{Layer::kPosition, "position", "position.X position.Y position.Z"},
+    LayerInfo{Layer::kTransmittance, "transmittance",
+              "transmittance.R transmittance.G transmittance.B"},
+    LayerInfo{Layer::kEmission, "emission", "emission.R emission.G emission.B"},
+    LayerInfo{Layer::kBackground, "background", "background.R background.G background.B"},
+    LayerInfo{Layer::kDirect, "direct", "direct.R direct.G direct.B"},
+    LayerInfo{Layer::kIndirect, "indirect", "indirect.R indirect.G indirect.B"},
+    LayerInfo{Layer::kHalves, "halves", "A.R A.G A.B B.R B.G B.B"}};
 
 LayerSet parse_one(std::string_view name) {
   if (name == "all") return LayerSet::all();
@@ -60,6 +45,16 @@ LayerSet parse_one(std::string_view name) {
 }  // namespace
 
 const std::array<LayerInfo, kLayers>& layer_infos() { return kInfos; }
+
+std::vector<std::string> channels_of(LayerSet layers) {
+  std::vector<std::string> channels;
+  for (const LayerInfo& info : kInfos) {
+    if (!layers.has(info.layer)) continue;
+    std::istringstream names{std::string(info.channels)};
+    channels.insert(channels.end(), std::istream_iterator<std::string>(names), {});
+  }
+  return channels;
+}
 
 LayerSet parse_layers(std::string_view text) {
   LayerSet layers;

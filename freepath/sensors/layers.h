@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace freepath {
 
@@ -26,13 +26,13 @@ enum class Layer : uint8_t {
   kIndirect,       ///< Light after two or more.
   kHalves,         ///< A.{R,G,B} and B.{R,G,B}: means of even and of odd samples.
 };
-inline constexpr int kLayers = 13;
+inline constexpr int kLayers = static_cast<int>(Layer::kHalves) + 1;
 
 /// What a layer is called, and its channels.
 struct LayerInfo {
   Layer layer;
   std::string_view name;
-  std::span<const std::string_view> channels;
+  std::string_view channels;  ///< Their names, separated by blanks.
 };
 
 /// All layers, in the order of a picture's channels.
@@ -63,6 +63,11 @@ class LayerSet {
     layers.bits_ |= bits_;
     return layers;
   }
+  /// What is in this set and in another.
+  constexpr LayerSet common(LayerSet layers) const {
+    layers.bits_ &= bits_;
+    return layers;
+  }
   constexpr bool operator==(const LayerSet&) const = default;
 
  private:
@@ -77,6 +82,9 @@ inline constexpr LayerSet kLightLayers = {Layer::kEmission, Layer::kBackground, 
 /// Layers for which paths have more to record than PathSample.
 inline constexpr LayerSet kPathLayers =
     kLightLayers.with({Layer::kNormal, Layer::kPosition, Layer::kTransmittance});
+
+/// Channels of a picture with these layers, behind R, G, B and A.
+std::vector<std::string> channels_of(LayerSet layers);
 
 /// "all", "none", "default", or names separated by commas, which may have these among them.
 /// @throws Error for a name that is none, with all that there are

@@ -56,12 +56,4 @@ LinearSpectrum sample_spectrum(const Function& function, int first, int last, in
   return {std::move(wavelengths), std::move(values), outside};
 }
 
-/// Reads pairs of a wavelength [nm] and a value, separated by white space; the rest of a line after
-/// '#' is a comment.
-/// @param source what an error calls the text: the name of its file
-/// @throws Error with source and line for what is not a number or a wavelength that does not
-/// increase
-LinearSpectrum read_linear_spectrum(std::string_view text, std::string_view source,
-                                    OutsideSamples outside = OutsideSamples::kHold);
-
 }  // namespace freepath

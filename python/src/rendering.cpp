@@ -36,10 +36,7 @@ namespace freepath::python {
 namespace {
 
 void check_film_memory(const PixelWindow& window, const RenderSettings& settings) {
-  std::size_t channels = 4 + settings.buckets.count;
-  for (const LayerInfo& info : layer_infos()) {
-    if (settings.layers.has(info.layer)) channels += info.channels.size();
-  }
+  std::size_t channels = 4 + settings.buckets.count + channels_of(settings.layers).size();
   const auto bytes = static_cast<double>(Film::bytes_per_pixel(settings.layers, settings.buckets) +
                                          channels * sizeof(float));
   check_memory_present("the picture", fmt::format("{} x {} pixels", window.width, window.height),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/paths/renderer.h"
 #include "tests/certify/planted.h"
 #include "tests/scene/image_file.h"
@@ -57,7 +58,7 @@ FilmMean volume_furnace(uint32_t samples, uint64_t seed) {
   fog.sigma_s = Rgb(6.0F);
   fog.emission = Rgb(1.0F);
   const Medium medium({fog});
-  const Camera camera(frame_box(medium.world_bounds(), UpAxis::kY, 25, 1), 8, 8);
+  const Camera camera(frame_points(corners_of(medium.world_bounds()), UpAxis::kY, 25, 1), 8, 8);
   RenderSettings settings;
   settings.samples = samples;
   settings.walk.seed = seed;

@@ -79,9 +79,9 @@ void ask_for_all(const ParameterList& list, Diagnostics& diagnostics) {
     };
     attempt([&] { list.get_integer(name, 0); });
     attempt([&] { list.get_float(name, 0); });
-    attempt([&] { list.get_point2(name, Vec2d(0)); });
+    attempt([&] { list.get_point2s(name); });
     attempt([&] { list.get_points(name); });
-    attempt([&] { list.get_normal(name, Vec3d(0)); });
+    attempt([&] { list.get_normals(name); });
     attempt([&] { list.get_bool(name, false); });
     attempt([&] { list.get_string(name, ""); });
     attempt([&] { list.get_texture(name); });

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -331,6 +332,23 @@ TEST(Surfaces, BoxesAreMetWhereTheSurfaceIsAndNotWithinOrOutside) {
   EXPECT_FALSE(meets(5, Vec3d(0), 2));
   EXPECT_TRUE(meets(5, {11, 0, 0}, 0.1));
   EXPECT_FALSE(meets(5, {10, 0, 0}, 0.5));
+  // A box that is turned by 45 degrees about z has its edges, not its faces, on the axes.
+  const auto turned_meets = [&](uint32_t shape, const Vec3d& centre, double half) {
+    const Matrix4d turn = Matrix4d().setAxisAngle(Vec3d(0, 0, 1), std::numbers::pi / 4);
+    const OrientedBox box({Vec3d(-half), Vec3d(half)},
+                          turn * Matrix4d().setTranslation(origin + centre));
+    return surfaces.intersects_box(std::array{shape}, box);
+  };
+  for (const uint32_t round : {0U, 1U}) {
+    EXPECT_FALSE(meets(round, {1.45, 0, 0}, 0.4));
+    EXPECT_TRUE(turned_meets(round, {1.45, 0, 0}, 0.4));
+    EXPECT_FALSE(turned_meets(round, {1.6, 0, 0}, 0.4));
+  }
+  // On the diagonal it is the other way round; a sphere errs towards yes.
+  EXPECT_TRUE(meets(0, {1.05, 1.05, 0}, 0.4));
+  EXPECT_FALSE(turned_meets(0, {1.05, 1.05, 0}, 0.4));
+  EXPECT_TRUE(turned_meets(5, {10 + 1.45, 0, 0}, 0.4));
+  EXPECT_FALSE(turned_meets(5, {10, 0, 0}, 0.5));
 }
 
 TEST(Surfaces, InsideIsEnclosedWhicheverWayTheNormalsPoint) {

@@ -24,6 +24,8 @@ std::shared_ptr<const TextureImage> read_texture_image(const std::string& path,
 
 SurfacePoint at(float u, float v) {
   SurfacePoint point;
+  point.position = Vec3f(0);
+  point.normal = point.shading_normal = Vec3f(0, 0, 1);
   point.u = u;
   point.v = v;
   return point;

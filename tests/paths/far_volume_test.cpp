@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
 
@@ -70,7 +71,7 @@ TEST(FarVolumes, AreTheSameButForRoundingElsewhere) {
     index_to_world *= Matrix4d().rotate(Vec3d(0.3, 0.5, 0.2));
     index_to_world *= Matrix4d().setTranslation(origin);
     const Medium medium = lump(index_to_world);
-    return picture(medium, frame_box(medium.world_bounds(), UpAxis::kY, 30, 1));
+    return picture(medium, frame_points(corners_of(medium.world_bounds()), UpAxis::kY, 30, 1));
   };
   const Image near = picture_at(Vec3d(0));
   for (const double distance : {1e6, 1e9}) {

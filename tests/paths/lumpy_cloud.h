@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "freepath/base/box.h"
 #include "freepath/paths/renderer.h"
 #include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
@@ -36,7 +37,8 @@ inline Component cloud(const Rgb& sigma_a, const Rgb& sigma_s, float g) {
 }
 
 inline Camera camera_for(const Medium& medium, int width, int height) {
-  return {frame_box(medium.world_bounds(), UpAxis::kY, 30, double(width) / height), width, height};
+  return {frame_points(corners_of(medium.world_bounds()), UpAxis::kY, 30, double(width) / height),
+          width, height};
 }
 
 inline Surroundings constant_light(float radiance) { return {Rgb(radiance)}; }

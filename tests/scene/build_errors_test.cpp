@@ -49,7 +49,8 @@ void expect_error(const std::string& text, const std::string& location, const st
 /// Statements before the world.
 const BrokenScene kPictures[] = {
     {R"(Camera "perspectiv")", "1:1", "did you mean 'perspective'?"},
-    {R"(Camera "realistic")", "1:1", "there is no camera 'realistic'"},
+    {R"(Camera "realistic")", "1:1",
+     "there is no camera of type 'realistic'; there are: perspective"},
     {R"(Camera "perspective" "float fov" 0)", "1:1", "angle of view is 0"},
     {R"(Camera "perspective" "float fov" 180)", "1:1", "angle of view is 180"},
     {R"(Camera "perspective" "float lensradius" -1)", "1:1", "radius -1"},
@@ -146,7 +147,7 @@ const BrokenScene kLights[] = {
     {R"(LightSource "infinite" "point3 portal" [ 0 0 0 1 0 0 1 1 0 0 3 0 ])", "2:1", "rectangle"},
     {R"(LightSource "infinite" "string filename" "no.exr")", "2:24", "no file 'no.exr'"},
     {R"(LightSource "projection")", "2:1", "needs 'filename'"},
-    {"AreaLightSource \"difuse\"\nShape \"sphere\"", "2:1", "known is diffuse"},
+    {"AreaLightSource \"difuse\"\nShape \"sphere\"", "2:1", "did you mean 'diffuse'?"},
     {"AreaLightSource \"diffuse\" \"rgb L\" [ -1 1 1 ]\nShape \"sphere\"", "2:27", "'L' is"},
     {"AreaLightSource \"diffuse\" \"float scale\" -1\nShape \"sphere\"", "2:1", "scale is -1"},
 };

@@ -131,12 +131,14 @@ TEST(SceneTwins, BoundaryOnTheFacesOfVoxelsNeedNotBeTraced) {
       R"("rgb sigma_s" [ .5 .3 .2 .3 .4 .6 ] "rgb sigma_a" [ .1 .2 .3 .1 .2 .3 ])"
       "\n";
   for (const std::string& grid : {lumpy_grid(), colors}) {
-    for (const char* const turn : {"", "Rotate 90 0 0 1 Translate .1 .2 .3 Scale .7 .8 .9\n"}) {
+    for (const char* const turn : {"", "Rotate 90 0 0 1 Translate .1 .2 .3 Scale .7 .8 .9\n",
+                                   "Translate .1 .2 .3 Rotate 25 1 .3 .2 Scale .7 .8 .9\n",
+                                   "Rotate 25 1 .3 .2 Scale .6 .8 .7 Rotate 40 0 1 .5\n"}) {
       const std::string on = turn + grid + medium_box("m", kTwinLow, -kTwinLow);
       const std::string within =
           turn + grid + medium_box("m", kTwinLow * (1 - 1e-5), -kTwinLow * (1 - 1e-5));
-      EXPECT_TRUE(needs_no_boundary(on));
-      EXPECT_FALSE(needs_no_boundary(within));
+      EXPECT_TRUE(needs_no_boundary(on)) << turn;
+      EXPECT_FALSE(needs_no_boundary(within)) << turn;
       expect_twins("faces", stage(on), stage(within));
     }
   }

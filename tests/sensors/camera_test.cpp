@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "freepath/base/box.h"
 #include "freepath/base/error.h"
 #include "tests/expect_near.h"
 
@@ -79,7 +80,7 @@ TEST(Camera, RefusesToStandTooFarAway) {
   EXPECT_EQ(complaint({0, 0, 0.99e30}, {0, 0, 0}), "");
 }
 
-TEST(FrameBox, ShowsTheWholeBoxWithASmallMargin) {
+TEST(FramePoints, ShowsTheWholeBoxWithASmallMargin) {
   const Box3d boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
                          {{100, 200, 300}, {104, 201, 302}},
                          {{0, 0, 0}, {0.1, 30, 0.1}},
@@ -87,11 +88,10 @@ TEST(FrameBox, ShowsTheWholeBoxWithASmallMargin) {
   for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
     for (const Box3d& box : boxes) {
       for (const auto& [width, height] : {std::pair{640, 360}, std::pair{100, 300}}) {
-        const View view = frame_box(box, up, 35, static_cast<double>(width) / height);
+        const View view =
+            frame_points(corners_of(box), up, 35, static_cast<double>(width) / height);
         double nearest_edge = 1;
-        for (int i = 0; i < 8; ++i) {
-          const Vec3d corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                             i & 4 ? box.max.z : box.min.z);
+        for (const Vec3d& corner : corners_of(box)) {
           const Vec3d film = project(view, width, height, corner);
           EXPECT_GT(film.z, 0);
           nearest_edge = std::min({nearest_edge, film.x / width, 1 - film.x / width,
@@ -103,20 +103,20 @@ TEST(FrameBox, ShowsTheWholeBoxWithASmallMargin) {
   }
 }
 
-TEST(FrameBox, IsTheSameViewForATurnedWorld) {
-  const View y_up = frame_box({{-1, -2, -3}, {1, 2, 3}}, UpAxis::kY, 40, 1.5);
-  const View z_up = frame_box({{-1, -3, -2}, {1, 3, 2}}, UpAxis::kZ, 40, 1.5);
+TEST(FramePoints, IsTheSameViewForATurnedWorld) {
+  const View y_up = frame_points(corners_of({{-1, -2, -3}, {1, 2, 3}}), UpAxis::kY, 40, 1.5);
+  const View z_up = frame_points(corners_of({{-1, -3, -2}, {1, 3, 2}}), UpAxis::kZ, 40, 1.5);
   expect_near(to_y_up(Vec3f(z_up.from), UpAxis::kZ), Vec3f(y_up.from), 1e-5F);
   EXPECT_EQ(z_up.up, Vec3d(0, 0, 1));
   EXPECT_LT(y_up.from.y, 0);  // a little below the middle
   EXPECT_GT(y_up.from.z, 0);  // in the south
 }
 
-TEST(FrameBox, RefusesBoxesWithoutExtent) {
-  EXPECT_THROW(frame_box(Box3d(), UpAxis::kY, 40, 1), Error);
-  EXPECT_THROW(frame_box({{1, 1, 1}, {1, 1, 1}}, UpAxis::kY, 40, 1), Error);
-  EXPECT_THROW(frame_box({{0, 0, 0}, {1, 1, 1}}, UpAxis::kY, 200, 1), Error);
-  EXPECT_THROW(frame_box({{0, 0, 0}, {1, 1, 1}}, UpAxis::kY, 40, 0), Error);
+TEST(FramePoints, RefusesPointsWithoutExtent) {
+  EXPECT_THROW(frame_points({}, UpAxis::kY, 40, 1), Error);
+  EXPECT_THROW(frame_points(corners_of({{1, 1, 1}, {1, 1, 1}}), UpAxis::kY, 40, 1), Error);
+  EXPECT_THROW(frame_points(corners_of({{0, 0, 0}, {1, 1, 1}}), UpAxis::kY, 200, 1), Error);
+  EXPECT_THROW(frame_points(corners_of({{0, 0, 0}, {1, 1, 1}}), UpAxis::kY, 40, 0), Error);
 }
 
 TEST(Camera, OfGivenRaysHasOneForEachPixelWhateverThePoint) {

@@ -12,16 +12,6 @@
 namespace freepath {
 namespace {
 
-/// The message of the error that reading this text gives.
-std::string parse_error(std::string_view text) {
-  try {
-    read_linear_spectrum(text, "lamp.spd");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(LinearSpectrum, ConnectsSamplesByLines) {
   const LinearSpectrum uneven({400, 500, 520}, {1, 3, -1});
   EXPECT_EQ(uneven(400), 1);
@@ -57,26 +47,6 @@ TEST(LinearSpectrum, HoldsOrVanishesOutside) {
   EXPECT_EQ(single(360), 7);
   EXPECT_EQ(single(560), 7);
   EXPECT_EQ(single(830), 7);
-}
-
-TEST(LinearSpectrum, IsReadFromText) {
-  const LinearSpectrum spectrum =
-      read_linear_spectrum("# a lamp\n400 1 # violet\r\n\t500,+2.5e0\n\n 600\n-1", "lamp.spd");
-  ASSERT_EQ(spectrum.wavelengths().size(), 3U);
-  EXPECT_EQ(spectrum(400), 1);
-  EXPECT_EQ(spectrum(500), 2.5);
-  EXPECT_EQ(spectrum(600), -1);
-}
-
-TEST(LinearSpectrum, NamesTheLineOfWhatItCannotRead) {
-  EXPECT_EQ(parse_error("400 1\n500 x1"), "lamp.spd:2: 'x1' is not a finite number");
-  EXPECT_EQ(parse_error("400 nan"), "lamp.spd:1: 'nan' is not a finite number");
-  EXPECT_EQ(parse_error("400 1e999"), "lamp.spd:1: '1e999' is not a finite number");
-  EXPECT_EQ(parse_error("400 1\n500"), "lamp.spd:2: the wavelength 500 nm has no value");
-  EXPECT_EQ(parse_error("400 1\n400 2"),
-            "lamp.spd:2: wavelengths have to increase, but 400 nm follows 400 nm");
-  EXPECT_EQ(parse_error("# nothing"),
-            "lamp.spd: there is no sample; write pairs of a wavelength in nm and a value");
 }
 
 TEST(LinearSpectrum, RefusesSamplesThatMakeNoFunction) {

@@ -8,26 +8,14 @@
 
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
-#include "freepath/base/nearest_name.h"
 #include "freepath/scene/assembly/build_media.h"
+#include "freepath/scene/assembly/entity_kinds.h"
 #include "freepath/spectra/white_balance.h"
 #include "freepath/transport/auto_tracker.h"
 #include "freepath/transport/walker.h"
 
 namespace freepath {
 namespace {
-
-[[noreturn]] void fail_unknown(const PbrtEntity& entity, std::string_view what,
-                               std::span<const std::string_view> known) {
-  std::string names;
-  for (const std::string_view name : known) {
-    names += names.empty() ? "" : ", ";
-    names += name;
-  }
-  const std::string_view nearest = nearest_name(entity.type, known);
-  fail_at(entity.location, "there is no {} {}{}; known are {}", what, in_quotes(entity.type),
-          nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest), names);
-}
 
 std::optional<double> given_float(const ParameterList& list, std::string_view name) {
   if (!list.type_of(name)) return {};
@@ -159,7 +147,7 @@ void read_film(BuildContext& context, FilmSize& size, PictureSettings& picture) 
   const ParameterList& list = film.parameters;
   constexpr std::string_view kKnown[] = {"rgb", "gbuffer", "spectral"};
   if (std::find(std::begin(kKnown), std::end(kKnown), film.type) == std::end(kKnown)) {
-    fail_unknown(film, "film", kKnown);
+    fail_unknown_type(film, "film", kKnown);
   }
   if (film.type == "spectral") picture.buckets = read_buckets(list);
   size.width = list.get_integer("xresolution", size.width);
@@ -184,7 +172,7 @@ void read_sampler(BuildContext& context, PictureSettings& picture) {
   constexpr std::string_view kKnown[] = {"independent", "halton",  "sobol",     "zsobol",
                                          "paddedsobol", "pmj02bn", "stratified"};
   if (std::find(std::begin(kKnown), std::end(kKnown), sampler.type) == std::end(kKnown)) {
-    fail_unknown(sampler, "sampler", kKnown);
+    fail_unknown_type(sampler, "sampler", kKnown);
   }
   const bool independent = sampler.type == "independent";
   context.scene.samples = independent ? SampleKind::kIndependent : SampleKind::kSobol;
@@ -289,7 +277,7 @@ PixelFilter make_filter(BuildContext& context) {
       return model;
     }
     constexpr std::string_view kKnown[] = {"box", "gaussian", "mitchell", "sinc", "triangle"};
-    fail_unknown(filter, "pixel filter", kKnown);
+    fail_unknown_type(filter, "pixel filter", kKnown);
   };
   const FilterModel model = make();
   list.report_unused(context.diagnostics);
@@ -329,7 +317,7 @@ CameraModel make_camera_model(const PbrtEntity& camera) {
     return model;
   }
   constexpr std::string_view kKnown[] = {"perspective", "orthographic", "spherical"};
-  fail_unknown(camera, "camera", kKnown);
+  fail_unknown_type(camera, "camera", kKnown);
 }
 
 }  // namespace

@@ -40,15 +40,6 @@ bool is_spectrum(ParameterType type) {
          type == ParameterType::kBlackbody;
 }
 
-std::string all_of(std::span<const std::string_view> names) {
-  std::string text;
-  for (const std::string_view name : names) {
-    if (!text.empty()) text += ", ";
-    text += name;
-  }
-  return text;
-}
-
 }  // namespace
 
 FloatInput float_input(const BuildContext& context, const ParameterList& list,
@@ -105,17 +96,6 @@ SpectrumId index_input(BuildContext& context, const ParameterList& list, std::st
             in_quotes(name), value);
   }
   return spectra.add(value, SpectrumRole::kIndex);
-}
-
-void fail_unknown_type(const PbrtEntity& entity, std::string_view what,
-                       std::span<const std::string_view> supported,
-                       std::span<const std::string_view> unsupported) {
-  if (std::find(unsupported.begin(), unsupported.end(), entity.type) != unsupported.end()) {
-    fail_at(entity.location, "the {} {} is not supported; there are: {}", what,
-            in_quotes(entity.type), all_of(supported));
-  }
-  fail_at(entity.location, "there is no {} of type {}{}", what, in_quotes(entity.type),
-          did_you_mean(entity.type, supported));
 }
 
 }  // namespace freepath

@@ -39,11 +39,4 @@ SpectrumId index_input(BuildContext& context, const ParameterList& list, std::st
 inline constexpr std::array<std::string_view, 4> kMetalIndexParameters = {
     "eta", "k", "conductor.eta", "conductor.k"};
 
-/// An Error for the type of a statement that cannot be built.
-/// @param what "material"
-/// @param supported,unsupported names that pbrt knows
-[[noreturn]] void fail_unknown_type(const PbrtEntity& entity, std::string_view what,
-                                    std::span<const std::string_view> supported,
-                                    std::span<const std::string_view> unsupported);
-
 }  // namespace freepath

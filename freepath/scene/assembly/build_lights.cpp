@@ -1,18 +1,16 @@
 #include "freepath/scene/assembly/build_lights.h"
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "freepath/base/error.h"
-#include "freepath/base/nearest_name.h"
 #include "freepath/io/image.h"
+#include "freepath/scene/assembly/entity_kinds.h"
 
 namespace freepath {
 namespace {
-
-constexpr std::string_view kLightKinds[] = {"distant", "goniometric", "infinite",
-                                            "point",   "projection",  "spot"};
 
 /// Reads one statement.
 class LightReader {
@@ -20,18 +18,14 @@ class LightReader {
   LightReader(BuildContext& context, const ParameterList& list, const Matrix4d& to_world)
       : context_(context), list_(list), to_world_(to_world) {}
 
-  LightDescription read(const std::string& type) {
-    if (type == "infinite") return infinite();
-    if (type == "distant") return distant();
-    if (type == "point") return point();
-    if (type == "spot") return spot();
-    if (type == "goniometric") return goniometric();
-    if (type == "projection") return projection();
-    const std::string_view nearest = nearest_name(type, kLightKinds);
-    fail_at(list_.location(),
-            "there is no light {}{}; known are distant, goniometric, infinite, point, projection, "
-            "spot, and AreaLightSource 'diffuse'",
-            in_quotes(type), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest));
+  LightDescription read(const PbrtEntity& light) {
+    constexpr EntityKind<LightDescription (LightReader::*)()> kKinds[] = {
+        {"distant", &LightReader::distant},       {"goniometric", &LightReader::goniometric},
+        {"infinite", &LightReader::infinite},     {"point", &LightReader::point},
+        {"projection", &LightReader::projection}, {"spot", &LightReader::spot},
+    };
+    const auto make = maker_of(light, "light", kKinds);
+    return (this->*make)();
   }
 
   SpectrumId spectrum(std::string_view name) {
@@ -157,7 +151,7 @@ std::vector<LightDescription> build_lights(BuildContext& context) {
                                "moving lights are not supported: this one stands as at the start");
     }
     lights.push_back(
-        LightReader(context, light.parameters, light.world_from_light.start).read(light.type));
+        LightReader(context, light.parameters, light.world_from_light.start).read(light));
     light.parameters.report_unused(context.diagnostics);
   }
   return lights;
@@ -165,7 +159,7 @@ std::vector<LightDescription> build_lights(BuildContext& context) {
 
 AreaEmission build_emission(BuildContext& context, const PbrtAreaLight& light) {
   if (light.type != "diffuse") {
-    fail_at(light.location, "there is no area light {}; known is diffuse", in_quotes(light.type));
+    fail_unknown_type(light, "area light", std::array<std::string_view, 1>{"diffuse"});
   }
   LightReader reader(context, light.parameters, Matrix4d());
   AreaEmission emission;

@@ -12,15 +12,13 @@
 #include <vector>
 
 #include "freepath/scene/assembly/build_inputs.h"
+#include "freepath/scene/assembly/entity_kinds.h"
 #include "freepath/scene/pbrt/nearest_name.h"
 #include "freepath/spectra/named_spectra.h"
 
 namespace freepath {
 namespace {
 
-constexpr std::array<std::string_view, 9> kMaterials = {
-    "coatedconductor",     "coateddiffuse", "conductor", "dielectric",    "diffuse",
-    "diffusetransmission", "interface",     "mix",       "thindielectric"};
 constexpr std::array<std::string_view, 3> kUnsupportedMaterials = {"hair", "measured",
                                                                    "subsurface"};
 
@@ -74,6 +72,18 @@ class MaterialParameters {
   BuildContext& context_;
   const ParameterList& list_;
 };
+
+/// Null: what is built otherwise.
+constexpr EntityKind<Material (MaterialParameters::*)() const> kMaterials[] = {
+    {"coatedconductor", &MaterialParameters::coated_conductor},
+    {"coateddiffuse", &MaterialParameters::coated_diffuse},
+    {"conductor", &MaterialParameters::conductor},
+    {"dielectric", &MaterialParameters::dielectric},
+    {"diffuse", &MaterialParameters::diffuse},
+    {"diffusetransmission", &MaterialParameters::diffuse_transmission},
+    {"interface", nullptr},
+    {"mix", nullptr},
+    {"thindielectric", &MaterialParameters::thin_dielectric}};
 
 void MaterialParameters::warn_of_unsupported() const {
   for (const std::string_view name : {"displacement", "normalmap"}) {
@@ -201,20 +211,11 @@ const MaterialBuilder::Built& MaterialBuilder::built(std::size_t index, int dept
 MaterialBuilder::Built MaterialBuilder::build(const PbrtMaterial& material, int depth) {
   const std::string& type = material.type;
   const MaterialParameters parameters(context_, material.parameters);
-  const auto with_surface = [&](const Material& made) {
-    parameters.warn_of_unsupported();
-    return Built{std::make_shared<const Material>(made)};
-  };
   if (type.empty() || type == "none" || type == "interface") return {};
-  if (type == "diffuse") return with_surface(parameters.diffuse());
-  if (type == "diffusetransmission") return with_surface(parameters.diffuse_transmission());
-  if (type == "conductor") return with_surface(parameters.conductor());
-  if (type == "dielectric") return with_surface(parameters.dielectric());
-  if (type == "thindielectric") return with_surface(parameters.thin_dielectric());
-  if (type == "coateddiffuse") return with_surface(parameters.coated_diffuse());
-  if (type == "coatedconductor") return with_surface(parameters.coated_conductor());
-  if (type == "mix") return mix(material, depth);
-  fail_unknown_type(material, "material", kMaterials, kUnsupportedMaterials);
+  const auto make = maker_of(material, "material", kMaterials, kUnsupportedMaterials);
+  if (make == nullptr) return mix(material, depth);
+  parameters.warn_of_unsupported();
+  return {std::make_shared<const Material>((parameters.*make)())};
 }
 
 MaterialBuilder::Built MaterialBuilder::mix(const PbrtMaterial& material, int depth) {

@@ -11,13 +11,14 @@
 
 #include "freepath/base/counted.h"
 #include "freepath/base/error.h"
-#include "freepath/base/nearest_name.h"
 #include "freepath/io/volume.h"
 #include "freepath/lights/photometry.h"
 #include "freepath/media/phase/parse_phase_function.h"
 #include "freepath/scene/assembly/cloud_density.h"
+#include "freepath/scene/assembly/entity_kinds.h"
 #include "freepath/scene/assembly/grid_voxels.h"
 #include "freepath/scene/assembly/scattering_presets.h"
+#include "freepath/scene/pbrt/nearest_name.h"
 
 namespace freepath {
 namespace {
@@ -39,28 +40,20 @@ class MediumReader {
                                 "moving media are not supported: this one stands as at the start");
     }
     return at_location(medium_.location, [&] {
-      if (medium_.type == "cloud") return cloud();
-      if (medium_.type == "homogeneous") return homogeneous(extent);
-      if (medium_.type == "uniformgrid") return uniform_grid();
-      if (medium_.type == "rgbgrid") return color_grid();
-      if (medium_.type == "nanovdb" || medium_.type == "openvdb") return volume_file();
-      fail_unknown();
+      constexpr EntityKind<SceneMedium (MediumReader::*)(const Box3d&)> kKinds[] = {
+          {"cloud", &MediumReader::cloud},
+          {"homogeneous", &MediumReader::homogeneous},
+          {"uniformgrid", &MediumReader::uniform_grid},
+          {"rgbgrid", &MediumReader::color_grid},
+          {"nanovdb", &MediumReader::volume_file},
+          {"openvdb", &MediumReader::volume_file},
+      };
+      const auto make = maker_of(medium_, "medium", kKinds);
+      return (this->*make)(extent);
     });
   }
 
  private:
-  [[noreturn]] void fail_unknown() const {
-    constexpr std::string_view kKnown[] = {"cloud",   "homogeneous", "uniformgrid",
-                                           "rgbgrid", "nanovdb",     "openvdb"};
-    const std::string_view nearest = nearest_name(medium_.type, kKnown);
-    fail(
-        "there is no type of medium {}{}; known are cloud, homogeneous, uniformgrid, rgbgrid, "
-        "nanovdb, "
-        "openvdb",
-        in_quotes(medium_.type),
-        nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest));
-  }
-
   const Matrix4d& to_world() const { return medium_.world_from_medium.start; }
 
   SpectralDistribution coefficient(std::string_view name, const SpectralDistribution& otherwise) {
@@ -78,9 +71,8 @@ class MediumReader {
       const auto found = find_scattering_preset(preset);
       if (!found) {
         const auto names = scattering_preset_names();
-        const std::string_view nearest = nearest_name(preset, names);
         fail_at(list_.location_of("preset"), "there is no preset {}{}", in_quotes(preset),
-                nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+                did_you_mean(preset, names));
       }
       const RgbColorSpace& space = rgb_color_space("srgb");
       sigma_a = RgbSpectrum::unbounded(found->sigma_a, space);
@@ -144,7 +136,7 @@ class MediumReader {
     component.temperature = emission;
   }
 
-  SceneMedium cloud() {
+  SceneMedium cloud(const Box3d& /*extent*/) {
     SceneMediumComponent component;
     read_coefficients(component);
     component.phase = phase();
@@ -191,7 +183,7 @@ class MediumReader {
     return read_voxels(list_, layout, name, medium_.name + "." + std::string(name));
   }
 
-  SceneMedium uniform_grid() {
+  SceneMedium uniform_grid(const Box3d& /*extent*/) {
     const VoxelLayout layout = read_voxel_layout(list_, to_world());
     SceneMediumComponent component;
     read_coefficients(component);
@@ -239,7 +231,7 @@ class MediumReader {
     return spectra;
   }
 
-  SceneMedium color_grid() {
+  SceneMedium color_grid(const Box3d& /*extent*/) {
     const VoxelLayout layout = read_voxel_layout(list_, to_world());
     auto grid = std::make_shared<ColorVoxels>();
     grid->super_voxel = context_.options.super_voxel;
@@ -284,7 +276,7 @@ class MediumReader {
                        [&](const GridInfo& info) { return info.name == name; });
   }
 
-  SceneMedium volume_file() {
+  SceneMedium volume_file(const Box3d& /*extent*/) {
     const std::filesystem::path file = file_of(context_, list_, "filename");
     const std::string density_name = list_.get_string("gridname", "density");
     const std::string temperature_name = list_.get_string("temperaturename", "temperature");

@@ -8,20 +8,17 @@
 #include <utility>
 
 #include "freepath/base/error.h"
-#include "freepath/base/nearest_name.h"
 #include "freepath/geometry/loop_subdivision.h"
 #include "freepath/geometry/ply_file.h"
 #include "freepath/geometry/surfaces.h"
 #include "freepath/scene/assembly/build_inputs.h"
 #include "freepath/scene/assembly/build_lights.h"
 #include "freepath/scene/assembly/build_media.h"
+#include "freepath/scene/assembly/entity_kinds.h"
 #include "freepath/scene/assembly/shape_emitter.h"
 
 namespace freepath {
 namespace {
-
-constexpr std::string_view kShapeKinds[] = {"bilinearmesh", "cylinder", "disk",        "loopsubdiv",
-                                            "plymesh",      "sphere",   "trianglemesh"};
 
 std::vector<int> indices_of(const ParameterList& list, std::size_t positions, int corners) {
   const std::span<const int> given = list.get_integers("indices");
@@ -47,38 +44,48 @@ Mesh read_mesh(const ParameterList& list, int corners) {
   return mesh;
 }
 
-std::vector<ShapeGeometry> read_geometry(BuildContext& context, const PbrtShape& shape) {
-  const ParameterList& list = shape.parameters;
-  if (shape.type == "sphere") {
-    const double radius = list.get_float("radius", 1);
-    return {Sphere{radius, list.get_float("zmin", -radius), list.get_float("zmax", radius),
-                   list.get_float("phimax", 360)}};
-  }
-  if (shape.type == "disk") {
-    return {Disk{list.get_float("height", 0), list.get_float("radius", 1),
-                 list.get_float("innerradius", 0), list.get_float("phimax", 360)}};
-  }
-  if (shape.type == "cylinder") {
-    return {Cylinder{list.get_float("radius", 1), list.get_float("zmin", -1),
-                     list.get_float("zmax", 1), list.get_float("phimax", 360)}};
-  }
-  if (shape.type == "trianglemesh") return {read_mesh<TriangleMesh>(list, 3)};
-  if (shape.type == "bilinearmesh") return {read_mesh<BilinearMesh>(list, 4)};
-  if (shape.type == "plymesh") {
-    const std::string file = file_of(context, list, "filename").string();
-    return at_location(list.location_of("filename"), [&] { return read_ply(file).shapes(); });
-  }
-  if (shape.type == "loopsubdiv") {
-    const std::vector<Vec3d> positions = list.get_points("P");
-    const std::vector<int> indices = indices_of(list, positions.size(), 3);
-    return {subdivide_loop(positions, indices, list.get_integer("levels", 3))};
-  }
-  const std::string_view nearest = nearest_name(shape.type, kShapeKinds);
-  fail(
-      "there is no shape {}{}; known are bilinearmesh, cylinder, disk, loopsubdiv, plymesh, "
-      "sphere, trianglemesh",
-      in_quotes(shape.type), nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest));
+using Geometries = std::vector<ShapeGeometry>;
+
+Geometries read_sphere(BuildContext& /*context*/, const ParameterList& list) {
+  const double radius = list.get_float("radius", 1);
+  return {Sphere{radius, list.get_float("zmin", -radius), list.get_float("zmax", radius),
+                 list.get_float("phimax", 360)}};
 }
+
+Geometries read_disk(BuildContext& /*context*/, const ParameterList& list) {
+  return {Disk{list.get_float("height", 0), list.get_float("radius", 1),
+               list.get_float("innerradius", 0), list.get_float("phimax", 360)}};
+}
+
+Geometries read_cylinder(BuildContext& /*context*/, const ParameterList& list) {
+  return {Cylinder{list.get_float("radius", 1), list.get_float("zmin", -1),
+                   list.get_float("zmax", 1), list.get_float("phimax", 360)}};
+}
+
+template <class Mesh, int kCorners>
+Geometries read_faces(BuildContext& /*context*/, const ParameterList& list) {
+  return {read_mesh<Mesh>(list, kCorners)};
+}
+
+Geometries read_ply_mesh(BuildContext& context, const ParameterList& list) {
+  const std::string file = file_of(context, list, "filename").string();
+  return at_location(list.location_of("filename"), [&] { return read_ply(file).shapes(); });
+}
+
+Geometries read_loop_subdivision(BuildContext& /*context*/, const ParameterList& list) {
+  const std::vector<Vec3d> positions = list.get_points("P");
+  const std::vector<int> indices = indices_of(list, positions.size(), 3);
+  return {subdivide_loop(positions, indices, list.get_integer("levels", 3))};
+}
+
+constexpr EntityKind<Geometries (*)(BuildContext&, const ParameterList&)> kShapes[] = {
+    {"bilinearmesh", read_faces<BilinearMesh, 4>},
+    {"cylinder", read_cylinder},
+    {"disk", read_disk},
+    {"loopsubdiv", read_loop_subdivision},
+    {"plymesh", read_ply_mesh},
+    {"sphere", read_sphere},
+    {"trianglemesh", read_faces<TriangleMesh, 3>}};
 
 /// Builds shapes one after the other.
 class ShapeBuilder {
@@ -124,7 +131,7 @@ class ShapeBuilder {
                                 boundary ? "an 'interface' is no light: this one stays dark"
                                          : "shapes of objects are no lights: this one stays dark");
     }
-    for (ShapeGeometry& geometry : read_geometry(context_, shape)) {
+    for (ShapeGeometry& geometry : maker_of(shape, "shape", kShapes)(context_, shape.parameters)) {
       // Each part of a file is a shape of its own, for it is a light of its own.
       const auto number = static_cast<uint32_t>(built_.shapes.size());
       SurfaceShape surface{std::move(geometry), shape.world_from_object.start,

@@ -14,6 +14,7 @@
 
 #include "freepath/scene/assembly/build_inputs.h"
 #include "freepath/scene/assembly/build_texture_mappings.h"
+#include "freepath/scene/assembly/entity_kinds.h"
 
 namespace freepath {
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "freepath/base/box.h"
 #include "freepath/base/error.h"
 #include "freepath/media/density_function.h"
 
@@ -113,13 +114,7 @@ std::shared_ptr<const Field> make_cloud_field(const std::string& name, const Clo
   Box3d inside;
   inside.extendBy(cloud.p0);
   inside.extendBy(cloud.p1);
-  Box3d world;
-  for (int corner = 0; corner < 8; ++corner) {
-    world.extendBy(Vec3d((corner & 1) != 0 ? inside.max.x : inside.min.x,
-                         (corner & 2) != 0 ? inside.max.y : inside.min.y,
-                         (corner & 4) != 0 ? inside.max.z : inside.min.z) *
-                   medium_to_world);
-  }
+  const Box3d world = Imath::transform(inside, medium_to_world);
   DensityFunction function;
   function.box = {Vec3f(world.min), Vec3f(world.max)};
   function.cells = Vec3i(16);

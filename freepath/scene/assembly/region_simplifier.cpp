@@ -13,23 +13,12 @@
 namespace freepath {
 namespace {
 
-/// The part of a medium that a boundary has to lie outside of: all but what rounding of places may
-/// take of it.
+/// The part of a medium that a boundary has to lie outside of: all but what rounding of positions
+/// may take of it.
 /// @param origin that these are relative to
-Box3d core_of(const Box3d& reach, const Vec3d& origin) {
+OrientedBox core_of(const OrientedBox& reach, const Vec3d& origin) {
   constexpr double kRounding = 4 * double{std::numeric_limits<float>::epsilon()};
-  double farthest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    farthest = std::max({farthest, std::abs(reach.min[axis] - origin[axis]),
-                         std::abs(reach.max[axis] - origin[axis])});
-  }
-  Box3d core = reach;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double rounding = std::min(kRounding * farthest, reach.size()[axis] / 4);
-    core.min[axis] += rounding;
-    core.max[axis] -= rounding;
-  }
-  return core;
+  return reach.grown_by(-kRounding * reach.farthest_coordinate(origin));
 }
 
 /// The corner of a box that a place is, a bit for each axis; nothing if it is none.
@@ -86,19 +75,15 @@ std::optional<Box3d> box_of(const TriangleMesh& mesh, bool is_reversed) {
 /// rays for those that are not closed.
 MediaSet media_at(const Surfaces& surfaces, const std::vector<PathShape>& shapes, std::size_t media,
                   const Vec3f& point) {
-  // Along no edge of anything that is built along axes or diagonals.
-  static const std::array<Vec3f, 3> kDirections = {Vec3f(0.5377F, 0.6211F, 0.5703F),
-                                                   Vec3f(-0.7321F, 0.3187F, -0.6021F),
-                                                   Vec3f(0.2239F, -0.8623F, -0.4541F)};
   std::vector<std::array<int32_t, 3>> needed(media);
-  for (std::size_t ray = 0; ray < kDirections.size(); ++ray) {
+  for (std::size_t ray = 0; ray < Surfaces::kProbes.size(); ++ray) {
     std::vector<int32_t> count(media);
     const auto add = [&](MediumId medium, int32_t number) {
       if (medium == kVacuum) return;
       count[medium] += number;
       needed[medium][ray] = std::max(needed[medium][ray], -count[medium]);
     };
-    for (const BoundaryCrossing& crossing : surfaces.all_crossings(point, kDirections[ray])) {
+    for (const BoundaryCrossing& crossing : surfaces.all_crossings(point, Surfaces::kProbes[ray])) {
       const PathShape& shape = shapes[crossing.shape];
       if (shape.inside == shape.outside) continue;
       add(crossing.enters ? shape.inside : shape.outside, 1);
@@ -130,9 +115,9 @@ class Simplifier {
       std::vector<uint32_t> boundary;
       if (!find_boundary(id, boundary)) continue;
       const std::optional<SceneMedium> filling = filling_of(id, boundary);
-      const Box3d reach = (filling ? *filling : scene_.media[id]).outer_bounds();
+      const OrientedBox reach = (filling ? *filling : scene_.media[id]).outer_box();
       // Boundaries may lie on the faces where the medium ends by itself.
-      const Box3d core = core_of(reach, scene_.origin);
+      const OrientedBox core = core_of(reach, scene_.origin);
       const std::vector<uint32_t> others = all_but(boundary);
       if (traced.intersects_box(boundaries_among(others), core)) continue;
       if (!filling && traced.intersects_box(boundary, core)) continue;
@@ -146,7 +131,7 @@ class Simplifier {
       if (!boundary.empty() && inside.count(id) == 0) continue;
       if (filling) scene_.media[id] = *filling;
       dissolve(id);
-      scene_.is_clear[id] = !traced.intersects_box(others, reach);
+      scene_.is_clear[id] = !traced.intersects_box(others, reach.bounds());
       return;
     }
   }

@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "freepath/base/box.h"
+
 namespace freepath {
 namespace {
 
@@ -62,11 +64,7 @@ class BoundsOf {
   }
   std::vector<EmitterBounds> box(const Vec3d& low, const Vec3d& high) const {
     EmitterBounds bounds = all_around();
-    for (int corner = 0; corner < 8; ++corner) {
-      bounds.box.extendBy(
-          from_object({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                       (corner & 4) != 0 ? high.z : low.z}));
-    }
+    for (const Vec3d& corner : corners_of({low, high})) bounds.box.extendBy(from_object(corner));
     return {bounds};
   }
 

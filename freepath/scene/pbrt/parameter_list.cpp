@@ -58,10 +58,6 @@ std::vector<SpectrumValue> spectra_of(const Parameter& parameter) {
   return spectra;
 }
 
-Vec2d pair_of(std::span<const double> numbers, const Vec2d& otherwise) {
-  return numbers.empty() ? otherwise : Vec2d(numbers[0], numbers[1]);
-}
-
 Vec3d triple_of(std::span<const double> numbers, const Vec3d& otherwise) {
   return numbers.empty() ? otherwise : Vec3d(numbers[0], numbers[1], numbers[2]);
 }
@@ -157,18 +153,8 @@ std::span<const double> ParameterList::get_floats(std::string_view name) const {
   return numbers(name, ParameterType::kFloat);
 }
 
-Vec2d ParameterList::get_point2(std::string_view name, const Vec2d& otherwise) const {
-  return pair_of(one(name, ParameterType::kPoint2), otherwise);
-}
 std::vector<Vec2d> ParameterList::get_point2s(std::string_view name) const {
   return pairs(name, ParameterType::kPoint2);
-}
-
-Vec2d ParameterList::get_vector2(std::string_view name, const Vec2d& otherwise) const {
-  return pair_of(one(name, ParameterType::kVector2), otherwise);
-}
-std::vector<Vec2d> ParameterList::get_vector2s(std::string_view name) const {
-  return pairs(name, ParameterType::kVector2);
 }
 
 Vec3d ParameterList::get_point(std::string_view name, const Vec3d& otherwise) const {
@@ -181,24 +167,13 @@ std::vector<Vec3d> ParameterList::get_points(std::string_view name) const {
 Vec3d ParameterList::get_vector(std::string_view name, const Vec3d& otherwise) const {
   return triple_of(one(name, ParameterType::kVector3), otherwise);
 }
-std::vector<Vec3d> ParameterList::get_vectors(std::string_view name) const {
-  return triples(name, ParameterType::kVector3);
-}
 
-Vec3d ParameterList::get_normal(std::string_view name, const Vec3d& otherwise) const {
-  return triple_of(one(name, ParameterType::kNormal3), otherwise);
-}
 std::vector<Vec3d> ParameterList::get_normals(std::string_view name) const {
   return triples(name, ParameterType::kNormal3);
 }
 
 bool ParameterList::get_bool(std::string_view name, bool otherwise) const {
   return only<bool>(find(name, ParameterType::kBool), otherwise);
-}
-std::vector<bool> ParameterList::get_bools(std::string_view name) const {
-  const Parameter* const parameter = find(name, ParameterType::kBool);
-  if (parameter == nullptr) return {};
-  return std::get<std::vector<bool>>(parameter->values);
 }
 
 std::string ParameterList::get_string(std::string_view name, const std::string& otherwise) const {

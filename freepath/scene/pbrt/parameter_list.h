@@ -50,18 +50,12 @@ class ParameterList {
   std::span<const int> get_integers(std::string_view name) const;
   double get_float(std::string_view name, double otherwise) const;
   std::span<const double> get_floats(std::string_view name) const;
-  Vec2d get_point2(std::string_view name, const Vec2d& otherwise) const;
   std::vector<Vec2d> get_point2s(std::string_view name) const;
-  Vec2d get_vector2(std::string_view name, const Vec2d& otherwise) const;
-  std::vector<Vec2d> get_vector2s(std::string_view name) const;
   Vec3d get_point(std::string_view name, const Vec3d& otherwise) const;
   std::vector<Vec3d> get_points(std::string_view name) const;
   Vec3d get_vector(std::string_view name, const Vec3d& otherwise) const;
-  std::vector<Vec3d> get_vectors(std::string_view name) const;
-  Vec3d get_normal(std::string_view name, const Vec3d& otherwise) const;
   std::vector<Vec3d> get_normals(std::string_view name) const;
   bool get_bool(std::string_view name, bool otherwise) const;
-  std::vector<bool> get_bools(std::string_view name) const;
   std::string get_string(std::string_view name, const std::string& otherwise) const;
   std::span<const std::string> get_strings(std::string_view name) const;
   /// The name of a texture; empty where there is none.
