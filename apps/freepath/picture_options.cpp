@@ -155,6 +155,10 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
       .add_flag("--no-near-light-lines", o.no_near_light_lines,
                 "Find lights in or near media at scatterings alone, not along lines that pass them")
       ->group("Method");
+  command
+      .add_flag("--no-lobe-lines", o.no_lobe_lines,
+                "Draw scatterings before a sun from the camera's end alone, not from its end too")
+      ->group("Method");
 }
 
 }  // namespace
@@ -284,6 +288,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.batch = options.batch;
   settings.shadow_roulette = !options.all_shadow_rays;
   settings.near_light_lines = !options.no_near_light_lines;
+  settings.lobe_lines = !options.no_lobe_lines;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.absorption = parse_absorption(options.absorption);

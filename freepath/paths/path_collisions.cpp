@@ -45,13 +45,16 @@ void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, s
   scatterings_.ray[n] = static_cast<uint32_t>(i);
   scatterings_.is_given[n] = scatterer_.is_given;
   scatterings_.g[n] = scatterer_.g;
+  const float ratio = path.lobe_chance > 0 ? path.lobe_chance / path.pdf : 0.0F;
+  scatterings_.lobe_ratio[n] = ratio;
+  if (lobe_lines_ && only_light_ == nullptr) path.lobe_ratio = ratio;
 }
 
 void PathWavefront::set_scatterer(const ScenePath& path, std::size_t component) {
   const MediumWalkers::Origin origin = scatterer_of(path, component);
   const PhaseFunction& phase = scene_.media[origin.medium].phase(origin.component);
   const HenyeyGreenstein* const function = phase.as_henyey_greenstein();
-  scatterer_ = {component, &phase, function != nullptr ? function->g() : 0,
+  scatterer_ = {component, &phase, function != nullptr ? function->g() : phase.mean_cosine(),
                 function != nullptr ? 0U : 1U};
 }
 
@@ -76,6 +79,11 @@ float PathWavefront::brightness(const ScenePath& path, const SampledSpectrum& ra
   if (setup_.shadow_guide == nullptr || !ShadowGuide::plays(path.scatterings, distance)) {
     return kNeverFaint;
   }
+  return brightness_of(path, radiance, in_rgb);
+}
+
+float PathWavefront::brightness_of(const ScenePath& path, const SampledSpectrum& radiance,
+                                   bool in_rgb) {
   const float sum = sum_of(radiance);  // of those that are not in use 0
   if (in_rgb) return sum * (1.0F / 3);
   return sum * (path.channel < 0 ? path.colors->per_white : path.colors->mean_per_white);
@@ -107,6 +115,7 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, draw.distance);
   for (int axis = 0; axis < 3; ++axis) scatterings_.to_light[axis][i] = draw.direction[axis];
+  if (draw.distance != kFromOutside) scatterings_.lobe_ratio[i] = 0;
 }
 
 void PathWavefront::set_only_light() {
@@ -209,23 +218,27 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
     path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
     if (path.is_dead || !draws_lights) continue;
     chooses_light ? draw_light_of(i, path) : take_only_light(i, path);
+    scatterings_.lobe_scale[i] = path.mean(path.throughput);
     if (scatterings_.is_given[i] != 0) {
       scatterings_.light_value[i] = scattered_[i].phase->evaluate(
           vector_at(scatterings_.direction, i), vector_at(scatterings_.to_light, i));
     }
   }
   const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
-  const ShadowGuide* const shadows = setup_.shadow_guide;
-  kernels_.scatter(scatterings_, shadows != nullptr ? shadows->roulette(medium) : kAllShadowRays);
+  const ShadowRoulette& shadows =
+      setup_.shadow_guide != nullptr ? setup_.shadow_guide->roulette(medium) : kAllShadowRays;
+  kernels_.scatter(scatterings_, shadows);
   const EmissionGuide* const guide = guide_of(medium);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
     if (path.is_dead) continue;
     if (is_viewed) show_collision(i);
     if (draws_lights) cast_shadow(i);
+    if (shadows.lobe_scale > 0) draw_lobe_line(i, shadows);
     if (guide != nullptr) draw_emission(i, *guide);
     if (scatterings_.is_given[i] != 0) draw_direction_of(i);
     turn_scattered(i, path);
+    path.lobe_chance = scatterings_.lobe_chance[i];
     if (near_lines_) draw_near_line(i);
     if (guide != nullptr) {
       const float found =

@@ -167,8 +167,10 @@ void PathWavefront::escape(ScenePath& path) {
   const bool in_rgb = sees_rgb(path);
   const LightSeen light =
       scene_.lights->escape(path.turned_at, path.direction, light_spectra(path, in_rgb));
-  // What next-event estimation could have found too is shared with it.
-  const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
+  // What next-event estimation could have found too is shared with it, and with lines in lobes.
+  const bool has_lobe = path.lobe_ratio > 0 && setup_.shadow_guide->is_dominant(path.direction);
+  const float drawn = has_lobe ? light.pdf * (1 + path.lobe_ratio * path.pdf) : light.pdf;
+  const float share = path.pdf > 0 ? path.pdf / (path.pdf + drawn) : 1.0F;
   const SampledSpectrum seen = light_throughput(path, in_rgb) * light.radiance * share;
   if (jobs_.layers.on() && path.scatterings == 0) {
     jobs_.layers.background(path.result, rgb_of(path, in_rgb ? SampledSpectrum() : seen,

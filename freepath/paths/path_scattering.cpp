@@ -31,6 +31,7 @@ void PathWavefront::go_on(ScenePath& path, const Vec3f& origin, const Vec3f& dir
   path.is_in_rays = false;
   path.line_is_drawn = false;
   path.emission_share = 1;
+  path.lobe_chance = 0;
   ++path.flights;
 }
 
@@ -270,6 +271,7 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
   path.is_coloured = true;  // equal at these wavelengths is not equal at all
   path.only_hero = path.only_hero || next->hero_only;
   path.pdf = next->specular ? 0.0F : next->pdf;
+  path.lobe_ratio = 0;
   const Departure departure = depart(path, hit, next->direction);
   set_media(path, departure.media);
   turn(path, position, departure.origin, next->direction);

@@ -23,13 +23,14 @@ struct alignas(64) ScenePath {
   uint32_t pixel = 0;
   uint32_t sample_key = 0;  ///< Key of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.
-  uint32_t turned_in = 0;   ///< The flight with which its direction began.
   uint32_t scatterings = 0;
   /// Density with which its direction was drawn [1/sr]; 0: it had no choice, or comes from the
   /// camera.
   float pdf = 0;
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
   float emission_share = 1;
+  /// With what probability its flight has a line of LobeLines beside it.
+  float lobe_chance = 0;
   uint8_t hero = 0;  ///< The channel that decides where channels part.
   bool surfaces_known = false;
   bool ends_at_surface = false;  ///< Once that is known.
@@ -45,6 +46,11 @@ struct alignas(64) ScenePath {
   /// lights, whose integral over all wavelengths is known.
   SampledSpectrum rgb;
   SampledSpectrum density{1.0F};  ///< FlightStream::density of the flights so far.
+
+  /// Of the flight before this one, if both are parted by a scattering in a medium: lobe_chance
+  /// over the density of the direction [sr]; else 0.
+  float lobe_ratio = 0;
+  uint32_t turned_in = 0;  ///< The flight with which its direction began.
 
   Vec3f origin{0};     ///< Origin of its ray [world, relative to the scene's origin].
   Vec3f direction{0};  ///< Direction of its ray, unit [world].

@@ -33,7 +33,13 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       emissions_(*setup.scene, setup.slots) {
   if (setup.near_lights != nullptr) {
     near_lines_.emplace(setup.slots);
-    near_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots, /*is_second=*/true);
+    near_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots,
+                          ShadowTracer::Rays::kOfNearLines);
+  }
+  if (setup.shadow_guide != nullptr && setup.shadow_guide->has_lobes()) {
+    lobe_lines_.emplace(setup.slots);
+    lobe_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots,
+                          ShadowTracer::Rays::kOfLobeLines);
   }
   if (scene_.surfaces) hits_.resize(setup.slots);
   if (!scene_.surfaces && scene_.media.size() == 1 && !scene_.domain && meter_ == nullptr) {
@@ -76,6 +82,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
                      deposit(path, cell, weight[0]);
                    });
     emissions_.trace(paths_, counts_.free_paths);
+    if (lobe_lines_) trace_lobe_lines();
     if (scope.stopped()) return false;
     end_paths(jobs, film);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "freepath/paths/emission_tracer.h"
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
+#include "freepath/paths/lobe_lines.h"
 #include "freepath/paths/near_light_lines.h"
 #include "freepath/paths/near_lights.h"
 #include "freepath/paths/open_jobs.h"
@@ -31,6 +33,9 @@ namespace freepath {
 /// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
 inline constexpr float kLargestThroughput = 1e28F;
 
+/// Distance of lights from outside of the scene: LightSample::distance.
+inline constexpr float kFromOutside = std::numeric_limits<float>::infinity();
+
 /// What all paths of a picture share.
 struct PathSetup {
   const PathScene* scene = nullptr;
@@ -44,7 +49,7 @@ struct PathSetup {
   /// Whether scatterings in emissive media also look for their light along lines of its own; where
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
-  /// Which shadow rays are cast; null: all.
+  /// Which shadow rays are cast, and where lines in lobes are; null: all, and none.
   const ShadowGuide* shadow_guide = nullptr;
   /// Lights in or near media whose light lines bring; null: scatterings alone do.
   const NearLights* near_lights = nullptr;
@@ -205,12 +210,23 @@ class PathWavefront {
                      const NearLights::Point& point, float factor, RandomStream& random);
   /// Traces light by way of the points that were drawn.
   void trace_near_lines();
+  /// The two ways in which a path adds up what it sees, as cells of a ShadowTracer.
+  enum Sum : uint32_t { kInWavelengths = 0, kInRgb = 1 };
+  /// Adds what is scattered once more than a path has been by now.
+  void add_ahead(ScenePath& path, uint32_t sum, const SampledSpectrum& radiance);
+  /// Draws a line in the lobe around the light of a scattering in the queue, if its chance comes.
+  void draw_lobe_line(std::size_t scattering, const ShadowRoulette& guide);
+  /// Flies those lines, and traces the light where they collide.
+  void trace_lobe_lines();
+  /// Casts a ray to its light from where a line has collided.
+  void light_lobe_line(const LobeLines::Line& line);
   /// Casts a ray to its light from a point that was drawn.
   void light_near_line(const NearLightLines::Line& line);
   /// Says how bright a radiance is to the picture: the mean of the channels, in units of white.
   /// Huge where the shadow ray to a light at that distance does not play.
   float brightness(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb,
                    float distance) const;
+  static float brightness_of(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb);
   /// With what probability to cast a shadow ray from a surface that brings this if nothing is in
   /// between.
   float shadow_survival(const ScenePath& path, const Vec3f& position, const LightSample& light,
@@ -324,6 +340,9 @@ class PathWavefront {
   // Where there are lights near media; else null.
   std::optional<NearLightLines> near_lines_;
   std::optional<ShadowTracer> near_shadows_;
+  // Where there are lines in lobes; else null.
+  std::optional<LobeLines> lobe_lines_;
+  std::optional<ShadowTracer> lobe_shadows_;
   OpenJobs jobs_;
   uint32_t newest_ = 0;        // job, whose paths start now
   std::size_t next_path_ = 0;  // of those

@@ -134,7 +134,11 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
     }
   }
   std::optional<ShadowGuide> shadow_guide;
-  if (settings.shadow_roulette) shadow_guide.emplace(factory, settings.walk.seed);
+  if (settings.shadow_roulette || settings.lobe_lines) {
+    const ShadowGuide::Wanted wanted{.roulette = settings.shadow_roulette,
+                                     .lobes = settings.lobe_lines};
+    shadow_guide.emplace(factory, wanted, settings.walk.seed);
+  }
   std::optional<NearLights> near_lights;
   if (settings.near_light_lines) near_lights.emplace(factory, settings.walk.seed);
   PathSetup setup;

@@ -28,6 +28,7 @@ struct RenderOptions {
   int threads = 0;
   bool shadow_roulette = true;
   bool near_light_lines = true;
+  bool lobe_lines = true;
   bool adaptive = false;
 };
 
