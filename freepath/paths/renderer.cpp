@@ -124,7 +124,10 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   }
   std::optional<WavelengthSampler> made;  // by the threads that are asked for
   Threads(settings.threads).execute([&] {
-    made.emplace(scene, mode, settings.wavelengths, settings.walk, settings.chooses_transmittance);
+    // Spectral films look at wavelengths that R, G and B hardly see.
+    made.emplace(
+        scene, mode, settings.wavelengths, settings.walk, settings.chooses_transmittance,
+        settings.buckets.count > 0 ? WavelengthDensity::kVisible : WavelengthDensity::kFilm);
   });
   const WavelengthSampler& factory = *made;
   if (!settings.studies_unbounded_weights) {
