@@ -156,8 +156,8 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
                 "Find lights in or near media at scatterings alone, not along lines that pass them")
       ->group("Method");
   command
-      .add_flag("--no-lobe-lines", o.no_lobe_lines,
-                "Draw scatterings before a sun from the camera's end alone, not from its end too")
+      .add_flag("--no-lobe-splitting", o.no_lobe_splitting,
+                "Never split paths towards a sun, where phase functions have lobes")
       ->group("Method");
 }
 
@@ -288,7 +288,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.batch = options.batch;
   settings.shadow_roulette = !options.all_shadow_rays;
   settings.near_light_lines = !options.no_near_light_lines;
-  settings.lobe_lines = !options.no_lobe_lines;
+  settings.lobe_splitting = !options.no_lobe_splitting;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.absorption = parse_absorption(options.absorption);

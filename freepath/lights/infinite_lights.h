@@ -1,7 +1,6 @@
 #pragma once
 /// @file All light from outside of the scene.
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -41,12 +40,6 @@ class InfiniteLights {
   double fluence() const { return fluence_; }
   /// Whether there is something to draw.
   bool is_drawn() const { return is_drawn_; }
-  /// Whether a light is seen through a portal, so that the density of its draws depends on where
-  /// they are made.
-  bool has_portal() const {
-    return std::any_of(lights_.begin(), lights_.end(),
-                       [](const Light& light) { return light.portal.has_value(); });
-  }
 
   /// The radiance that an escaping ray sees, and the density of `sample` in its direction [1/sr],
   /// to which lights that are not drawn add nothing.

@@ -1,8 +1,6 @@
 #pragma once
 /// @file All lights of a scene, as its paths see them.
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -74,14 +72,6 @@ class SceneLights {
 
   /// Whether there is a light to draw.
   bool is_drawn() const { return infinite_.is_drawn() || !distant_.empty() || !chooser_.is_dark(); }
-
-  /// Whether draws of light from outside of the scene are not the same everywhere: their density
-  /// or how far the light is depends on the position.
-  bool outside_depends_on_position() const {
-    return infinite_.has_portal() ||
-           std::any_of(distant_.begin(), distant_.end(),
-                       [](const Distant& light) { return std::isfinite(light.distance); });
-  }
 
   /// Light from one direction.
   struct Distant {

@@ -45,9 +45,6 @@ void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, s
   scatterings_.ray[n] = static_cast<uint32_t>(i);
   scatterings_.is_given[n] = scatterer_.is_given;
   scatterings_.g[n] = scatterer_.g;
-  const float ratio = path.lobe_chance > 0 ? path.lobe_chance / path.pdf : 0.0F;
-  scatterings_.lobe_ratio[n] = ratio;
-  if (lobe_lines_ && only_light_ == nullptr) path.lobe_ratio = ratio;
 }
 
 void PathWavefront::set_scatterer(const ScenePath& path, std::size_t component) {
@@ -79,11 +76,6 @@ float PathWavefront::brightness(const ScenePath& path, const SampledSpectrum& ra
   if (setup_.shadow_guide == nullptr || !ShadowGuide::plays(path.scatterings, distance)) {
     return kNeverFaint;
   }
-  return brightness_of(path, radiance, in_rgb);
-}
-
-float PathWavefront::brightness_of(const ScenePath& path, const SampledSpectrum& radiance,
-                                   bool in_rgb) {
   const float sum = sum_of(radiance);  // of those that are not in use 0
   if (in_rgb) return sum * (1.0F / 3);
   return sum * (path.channel < 0 ? path.colors->per_white : path.colors->mean_per_white);
@@ -93,7 +85,9 @@ void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
   Scattering& scattering = scattered_[i];
   scattering.in_rgb = sees_rgb(path);
   const SampledSpectrum light = light_spectra(path, scattering.in_rgb)[only_light_->radiance];
-  scattering.radiance = light_throughput(path, scattering.in_rgb) * light * only_light_->scale;
+  const float brought = share_of_light(path, only_light_->towards, only_light_->distance);
+  scattering.radiance =
+      light_throughput(path, scattering.in_rgb) * light * (only_light_->scale * brought);
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, only_light_->distance);
 }
@@ -106,16 +100,16 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
   const LightSample draw =
       draw_light(vector_at(scatterings_.position, i), light_spectra(path, scattering.in_rgb), u);
   scattering.end = shadow_end(draw);
-  scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance;
+  const float brought = share_of_light(path, draw.direction, draw.distance);
+  scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance * brought;
   const bool has_line =
       setup_.near_lights != nullptr && draw.within &&
       setup_.near_lights->has_line(*draw.within, path.medium, vector_at(scatterings_.position, i));
-  scatterings_.light_pdf[i] = has_line ? 0 : draw.pdf;
+  scatterings_.light_pdf[i] = has_line || brought == 0 ? 0 : draw.pdf;
   scatterings_.light_found[i] = draw.delta ? 0.0F : 1.0F;
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, draw.distance);
   for (int axis = 0; axis < 3; ++axis) scatterings_.to_light[axis][i] = draw.direction[axis];
-  if (draw.distance != kFromOutside) scatterings_.lobe_ratio[i] = 0;
 }
 
 void PathWavefront::set_only_light() {
@@ -168,7 +162,8 @@ void PathWavefront::turn_scattered(std::size_t i, ScenePath& path) {
   path.ends_at_surface = false;
   path.surfaces_known = false;
   path.emission_share = 1;
-  path.turned_in = ++path.flights;
+  ++path.flights;
+  if (has_alpha_) path.turned_in = path.flights;
   path.is_sent = path.is_in_rays = true;
   going_on_[going_on_count_++] = static_cast<uint32_t>(i);
 }
@@ -213,20 +208,26 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   const bool is_viewed = meter_ != nullptr && !meter_->views.empty();
   kernels_.draw_numbers(scatterings_, setup_.seed,
                         chooses_light ? kScatteringBlocks : kBlocksWithoutLight);
+  const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
+  const ShadowRoulette& shadows =
+      setup_.shadow_guide != nullptr ? setup_.shadow_guide->roulette(medium) : kAllShadowRays;
+  // Branches are faint: their light is looked for before roulette, or most of it would be lost.
+  const bool splits = shadows.lobe_scale > 0;
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
-    path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
+    path.is_dead = !path.is_branch && !survives(path, scatterings_.numbers[kRouletteNumber][i]);
     if (path.is_dead || !draws_lights) continue;
+    if (splits) {
+      const float throughput = path.mean(path.throughput) * path.sun_share;
+      scatterings_.lobe_scale[i] =
+          path.is_branch ? std::max(throughput, setup_.roulette_threshold) : throughput;
+    }
     chooses_light ? draw_light_of(i, path) : take_only_light(i, path);
-    scatterings_.lobe_scale[i] = path.mean(path.throughput);
     if (scatterings_.is_given[i] != 0) {
       scatterings_.light_value[i] = scattered_[i].phase->evaluate(
           vector_at(scatterings_.direction, i), vector_at(scatterings_.to_light, i));
     }
   }
-  const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
-  const ShadowRoulette& shadows =
-      setup_.shadow_guide != nullptr ? setup_.shadow_guide->roulette(medium) : kAllShadowRays;
   kernels_.scatter(scatterings_, shadows);
   const EmissionGuide* const guide = guide_of(medium);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
@@ -234,12 +235,15 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
     if (path.is_dead) continue;
     if (is_viewed) show_collision(i);
     if (draws_lights) cast_shadow(i);
-    if (shadows.lobe_scale > 0) draw_lobe_line(i, shadows);
-    if (guide != nullptr) draw_emission(i, *guide);
+    if (guide != nullptr && !path.is_branch) draw_emission(i, *guide);
+    if (path.is_branch) {
+      path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
+      if (path.is_dead) continue;
+    }
     if (scatterings_.is_given[i] != 0) draw_direction_of(i);
+    if (splits) split(i, path, shadows.dominant);
     turn_scattered(i, path);
-    path.lobe_chance = scatterings_.lobe_chance[i];
-    if (near_lines_) draw_near_line(i);
+    if (near_lines_ && !path.is_branch) draw_near_line(i);
     if (guide != nullptr) {
       const float found =
           guide->pdf(vector_at(scatterings_.position, i), vector_at(scatterings_.next, i));

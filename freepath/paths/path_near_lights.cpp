@@ -5,6 +5,9 @@
 namespace freepath {
 namespace {
 
+/// The two ways in which a path adds up what it sees, as cells of a ShadowTracer.
+enum Sum : uint32_t { kInWavelengths = 0, kInRgb = 1 };
+
 /// Share of the lines from scatterings that take the directions of their paths.
 constexpr float kPathDirections = 0.5F;
 
@@ -91,16 +94,13 @@ void PathWavefront::trace_near_lines() {
                      [&](const NearLightLines::Line& line) { light_near_line(line); });
   near_shadows_->trace(paths_, counts_.shadow_rays,
                        [&](ScenePath& path, uint32_t sum, const SampledSpectrum& radiance) {
-                         add_ahead(path, sum, radiance);
+                         const SampledSpectrum none;
+                         (sum == kInRgb ? path.rgb : path.radiance) += radiance;
+                         if (!jobs_.layers.on()) return;
+                         jobs_.layers.ahead(path.result, sum == kInRgb
+                                                             ? rgb_of(path, none, radiance)
+                                                             : rgb_of(path, radiance, none));
                        });
-}
-
-void PathWavefront::add_ahead(ScenePath& path, uint32_t sum, const SampledSpectrum& radiance) {
-  const SampledSpectrum none;
-  (sum == kInRgb ? path.rgb : path.radiance) += radiance;
-  if (!jobs_.layers.on()) return;
-  jobs_.layers.ahead(path.result,
-                     sum == kInRgb ? rgb_of(path, none, radiance) : rgb_of(path, radiance, none));
 }
 
 }  // namespace freepath

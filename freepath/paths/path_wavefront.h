@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,7 +12,7 @@
 #include "freepath/paths/emission_tracer.h"
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
-#include "freepath/paths/lobe_lines.h"
+#include "freepath/paths/lobe_branch.h"
 #include "freepath/paths/near_light_lines.h"
 #include "freepath/paths/near_lights.h"
 #include "freepath/paths/open_jobs.h"
@@ -33,9 +32,6 @@ namespace freepath {
 /// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
 inline constexpr float kLargestThroughput = 1e28F;
 
-/// Distance of lights from outside of the scene: LightSample::distance.
-inline constexpr float kFromOutside = std::numeric_limits<float>::infinity();
-
 /// What all paths of a picture share.
 struct PathSetup {
   const PathScene* scene = nullptr;
@@ -49,7 +45,7 @@ struct PathSetup {
   /// Whether scatterings in emissive media also look for their light along lines of its own; where
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
-  /// Which shadow rays are cast, and where lines in lobes are; null: all, and none.
+  /// Which shadow rays are cast, and where paths split; null: all, and nowhere.
   const ShadowGuide* shadow_guide = nullptr;
   /// Lights in or near media whose light lines bring; null: scatterings alone do.
   const NearLights* near_lights = nullptr;
@@ -199,6 +195,22 @@ class PathWavefront {
   void draw_light_of(std::size_t scattering, const ScenePath& path);
   /// What the alpha of a light leaves of a draw of it.
   LightSample with_alpha(LightSample light, const Vec3f& position) const;
+  /// Follows a scattering in the queue in two directions, if its chance comes. The path has that
+  /// drawn for it, and its share.
+  /// @param dominant direction from which most light comes
+  void split(std::size_t scattering, ScenePath& path, const Vec3f& dominant);
+  /// What of a light a path brings, the rest being its branches'.
+  /// @param distance to it
+  float share_of_light(const ScenePath& path, const Vec3f& direction, float distance) const {
+    if (path.sun_share == 1 && !path.is_branch) return 1;
+    const bool is_sun = !std::isfinite(distance) && setup_.shadow_guide->is_dominant(direction);
+    return is_sun ? path.sun_share : path.is_branch ? 0.0F : 1.0F;
+  }
+  std::vector<LobeBranch>& branches_of(const ScenePath& path) {
+    return branches_[&path - paths_.data()];
+  }
+  /// Goes on with a branch of a path that has ended, if one waits.
+  bool take_lobe_branch(ScenePath& path);
   /// Draws a point for a light that the next ray of a path passes near, if it does.
   /// @param length of the ray, may be infinite
   void send_near_line(std::size_t slot, float length);
@@ -210,23 +222,12 @@ class PathWavefront {
                      const NearLights::Point& point, float factor, RandomStream& random);
   /// Traces light by way of the points that were drawn.
   void trace_near_lines();
-  /// The two ways in which a path adds up what it sees, as cells of a ShadowTracer.
-  enum Sum : uint32_t { kInWavelengths = 0, kInRgb = 1 };
-  /// Adds what is scattered once more than a path has been by now.
-  void add_ahead(ScenePath& path, uint32_t sum, const SampledSpectrum& radiance);
-  /// Draws a line in the lobe around the light of a scattering in the queue, if its chance comes.
-  void draw_lobe_line(std::size_t scattering, const ShadowRoulette& guide);
-  /// Flies those lines, and traces the light where they collide.
-  void trace_lobe_lines();
-  /// Casts a ray to its light from where a line has collided.
-  void light_lobe_line(const LobeLines::Line& line);
   /// Casts a ray to its light from a point that was drawn.
   void light_near_line(const NearLightLines::Line& line);
   /// Says how bright a radiance is to the picture: the mean of the channels, in units of white.
   /// Huge where the shadow ray to a light at that distance does not play.
   float brightness(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb,
                    float distance) const;
-  static float brightness_of(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb);
   /// With what probability to cast a shadow ray from a surface that brings this if nothing is in
   /// between.
   float shadow_survival(const ScenePath& path, const Vec3f& position, const LightSample& light,
@@ -340,9 +341,7 @@ class PathWavefront {
   // Where there are lights near media; else null.
   std::optional<NearLightLines> near_lines_;
   std::optional<ShadowTracer> near_shadows_;
-  // Where there are lines in lobes; else null.
-  std::optional<LobeLines> lobe_lines_;
-  std::optional<ShadowTracer> lobe_shadows_;
+  std::vector<std::vector<LobeBranch>> branches_;  // of the paths, if they split
   OpenJobs jobs_;
   uint32_t newest_ = 0;        // job, whose paths start now
   std::size_t next_path_ = 0;  // of those

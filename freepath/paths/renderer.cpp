@@ -136,14 +136,14 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
       require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
     }
   }
-  std::optional<ShadowGuide> shadow_guide;
-  if (settings.shadow_roulette || settings.lobe_lines) {
-    const ShadowGuide::Wanted wanted{.roulette = settings.shadow_roulette,
-                                     .lobes = settings.lobe_lines};
-    shadow_guide.emplace(factory, wanted, settings.walk.seed);
-  }
   std::optional<NearLights> near_lights;
   if (settings.near_light_lines) near_lights.emplace(factory, settings.walk.seed);
+  std::optional<ShadowGuide> shadow_guide;
+  if (settings.shadow_roulette || settings.lobe_splitting) {
+    const ShadowGuide::Wanted wanted{.roulette = settings.shadow_roulette,
+                                     .lobes = settings.lobe_splitting};
+    shadow_guide.emplace(factory, wanted, settings.walk.seed);
+  }
   PathSetup setup;
   setup.near_lights = near_lights && !near_lights->is_empty() ? &*near_lights : nullptr;
   setup.shadow_guide = shadow_guide ? &*shadow_guide : nullptr;

@@ -52,9 +52,9 @@ struct RenderSettings {
   /// Finds the light of lights in or near media along lines, whose variance has an end
   /// (NearLights); else at scatterings alone.
   bool near_light_lines = true;
-  /// Draws the last two scatterings before a light that outshines others, like the sun, from its
-  /// end too, in lobes of phase functions (LobeLines); else from the camera's alone.
-  bool lobe_lines = true;
+  /// Splits paths towards a light that outshines others, like the sun, where phase functions have
+  /// lobes (LobeBranch).
+  bool lobe_splitting = true;
   /// Leaves out light from outside that is seen without a scattering: pictures of what is in the
   /// scene alone, premultiplied by alpha.
   bool transparent = false;

@@ -150,15 +150,6 @@ bool SceneMedium::is_constant(const SpectrumTable& table) const {
                                        });
 }
 
-const PhaseFunction* SceneMedium::only_phase() const {
-  const HenyeyGreenstein* const first = phases_[0].as_henyey_greenstein();
-  for (std::size_t i = 1; i < phases_.size(); ++i) {
-    const HenyeyGreenstein* const other = phases_[i].as_henyey_greenstein();
-    if (first == nullptr || other == nullptr || other->g() != first->g()) return nullptr;
-  }
-  return phases_.data();
-}
-
 SampledSpectrum SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {
   if (components_.empty()) return SampledSpectrum(1.0F);
   const SceneMediumComponent& values = components_[std::min(component, components_.size() - 1)];

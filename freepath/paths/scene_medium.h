@@ -80,8 +80,6 @@ class SceneMedium {
   const PhaseFunction& phase(std::size_t component) const {
     return phases_[std::min(component, phases_.size() - 1)];
   }
-  /// The phase function that all components have; null if they differ, or may.
-  const PhaseFunction* only_phase() const;
   /// Scattering over extinction of a component, for pictures of it.
   SampledSpectrum albedo(std::size_t component, const SpectrumValues& spectra) const;
   /// Memory that `bind` takes for so many wavelengths, beside what all of them share.

@@ -25,7 +25,7 @@ constexpr std::array<double, 2> kLattice{0.8191725133961645, 0.6710436067037893}
 /// A direction is dominant if so much of the light comes from there.
 constexpr float kDominantShare = 0.25F;
 
-/// Lines in lobes pay where two scatterings, forwards, are so many times as likely to turn light
+/// Splitting pays where two scatterings, forwards, are so many times as likely to turn light
 /// into a direction as if they were isotropic.
 constexpr double kLeastPeak = 1.5;
 constexpr int kMoments = 64;
@@ -54,22 +54,23 @@ ShadowGuide::ShadowGuide(const WavelengthSampler& factory, const Wanted& wanted,
   for (std::size_t i = 0; i < media.size(); ++i) {
     media_.push_back(tabulate(scene, factory.bound_in_rgb(i), media[i].bounds(), seed));
     if (!wanted.lobes || media_.back().roots == nullptr) continue;
-    media_.back().lobe_scale = lobe_scale(scene, media[i]);
+    media_.back().lobe_scale = lobe_scale(media[i]);
     has_lobes_ = has_lobes_ || media_.back().lobe_scale > 0;
   }
 }
 
-float ShadowGuide::lobe_scale(const PathScene& scene, const SceneMedium& medium) const {
-  const PhaseFunction* const phase = medium.only_phase();
-  // Densities of draws have to be the same wherever they are made.
-  if (phase == nullptr || scene.lights->outside_depends_on_position()) return 0;
-  const std::vector<double> moments = legendre_moments(*phase, kMoments);
+float ShadowGuide::lobe_scale(const SceneMedium& medium) const {
+  const std::size_t components = std::max<std::size_t>(medium.components().size(), 1);
   double peak = 0;
-  for (std::size_t l = 0; l < moments.size(); ++l) {
-    peak += static_cast<double>(2 * l + 1) * moments[l] * moments[l];
+  for (std::size_t k = 0; k < components; ++k) {
+    const std::vector<double> moments = legendre_moments(medium.phase(k), kMoments);
+    double of_two = 0;
+    for (std::size_t l = 0; l < moments.size(); ++l) {
+      of_two += static_cast<double>(2 * l + 1) * moments[l] * moments[l];
+    }
+    peak = std::max(peak, of_two);
   }
-  if (peak < kLeastPeak) return 0;
-  return dominant_share_ * 4 * std::numbers::pi_v<float>;
+  return peak < kLeastPeak ? 0 : dominant_share_ * 4 * std::numbers::pi_v<float>;
 }
 
 void ShadowGuide::find_dominant(const PathScene& scene) {

@@ -26,7 +26,7 @@ class ShadowGuide {
   /// What it is asked for.
   struct Wanted {
     bool roulette = true;  ///< Of shadow rays; else all are cast.
-    bool lobes = true;     ///< Lines in lobes, where they pay.
+    bool lobes = true;     ///< Paths that split, where that pays.
   };
   /// @param seed of the estimates of transmittance
   ShadowGuide(const WavelengthSampler& factory, const Wanted& wanted, uint64_t seed);
@@ -39,9 +39,9 @@ class ShadowGuide {
   static bool plays(uint32_t scatterings, float distance) {
     return scatterings >= kFirstScattering && !std::isfinite(distance);
   }
-  /// Whether lines are drawn in the lobes of a medium.
+  /// Whether paths split in a medium.
   bool has_lobes() const { return has_lobes_; }
-  /// Whether a direction is that of the light around which they are drawn.
+  /// Whether a direction is in the cone around that from which most light comes.
   bool is_dominant(const Vec3f& direction) const {
     return dominant_ && direction.dot(*dominant_) >= ShadowRoulette::kSameDirection;
   }
@@ -55,7 +55,7 @@ class ShadowGuide {
   static constexpr uint32_t kFirstScattering = 2;
 
   void find_dominant(const PathScene& scene);
-  float lobe_scale(const PathScene& scene, const SceneMedium& medium) const;
+  float lobe_scale(const SceneMedium& medium) const;
   ShadowRoulette tabulate(const PathScene& scene, const BoundMedium& bound, const Box3d& bounds,
                           uint64_t seed);
 

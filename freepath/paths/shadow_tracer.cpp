@@ -19,19 +19,16 @@ constexpr uint32_t kHashedStreams = 0xE0000000U;
 
 uint32_t ShadowTracer::stream_of(uint32_t flight, uint32_t segment) const {
   const uint32_t stream = stream_number(StreamPurpose::kShadowWalk, flight);
-  if (segment < kOrderedSegments && rays_ == Rays::kOfScatterings) {
-    return stream + (segment << kSegmentShift);
-  }
-  return kHashedStreams |
-         philox({stream, segment, static_cast<uint32_t>(rays_), 0}, {0, 0})[0] >> 3;
+  if (segment < kOrderedSegments && !is_second_) return stream + (segment << kSegmentShift);
+  return kHashedStreams | philox({stream, segment, is_second_ ? 1U : 0U, 0}, {0, 0})[0] >> 3;
 }
 
 ShadowTracer::ShadowTracer(const PathScene& scene, MediaSetTable& media_sets, uint64_t seed,
-                           std::size_t slots, Rays rays)
+                           std::size_t slots, bool is_second)
     : scene_(scene),
       media_sets_(media_sets),
       seed_(seed),
-      rays_(rays),
+      is_second_(is_second),
       has_holes_(std::any_of(scene.materials.begin(), scene.materials.end(),
                              [](const Material& material) { return material.has_holes(); }) ||
                  std::any_of(scene.shapes.begin(), scene.shapes.end(),

@@ -20,13 +20,11 @@ class ShadowTracer {
  public:
   static constexpr uint32_t kNoCell = UINT32_MAX;
 
-  /// Of several that trace rays of the same paths and flights, which have random numbers of their
-  /// own.
-  enum class Rays : uint32_t { kOfScatterings = 0, kOfNearLines = 1, kOfLobeLines = 2 };
-
   /// @param scene,media_sets must outlive this
+  /// @param is_second of two that trace rays of the same paths and flights, whose random numbers
+  ///   are to be others
   ShadowTracer(const PathScene& scene, MediaSetTable& media_sets, uint64_t seed, std::size_t slots,
-               Rays rays = Rays::kOfScatterings);
+               bool is_second = false);
 
   /// Adds a ray.
   /// @param owner number of the path, whose radiance it is to add to
@@ -99,7 +97,7 @@ class ShadowTracer {
   const PathScene& scene_;
   MediaSetTable& media_sets_;
   uint64_t seed_;
-  Rays rays_;
+  bool is_second_;
   bool has_holes_ = false;  // whether a material or an alpha of the scene has
   bool is_open_ = false;    // whether each ray has at most one medium on its way
   std::vector<Arrival> arrivals_;

@@ -110,7 +110,7 @@ HWY_INLINE DominantLanes dominant_lanes(const ShadowRoulette& roulette, const Ve
           hn::Ge(cosine, set(ShadowRoulette::kSameDirection))};
 }
 
-/// With what probability lines are drawn in the lobes around the dominant light.
+/// With what probability paths split into the lobe around the dominant light.
 HWY_INLINE VecF lobe_chances(const ShadowRoulette& roulette, VecF g, const VectorLanes& before,
                              VecF throughput, VecF root) {
   if (roulette.lobe_scale == 0) return hn::Zero(kFloat);
@@ -153,12 +153,8 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
     // The phase function is its own density.
     const VecF light_pdf = hn::Load(kFloat, &scatterings.light_pdf[i]);
     const VecF chance = hn::Mul(hn::Load(kFloat, &scatterings.light_found[i]), value);
-    const VecF in_lobe = hn::IfThenElseZero(
-        dominant.same,
-        hn::Mul(hn::Mul(hn::Load(kFloat, &scatterings.lobe_ratio[i]), light_pdf), value));
     const MaskF drawn = hn::Gt(light_pdf, hn::Zero(kFloat));
-    const VecF density =
-        hn::IfThenElse(drawn, hn::Add(hn::Add(light_pdf, chance), in_lobe), set(1.0F));
+    const VecF density = hn::IfThenElse(drawn, hn::Add(light_pdf, chance), set(1.0F));
     const VecF share = hn::IfThenElseZero(drawn, hn::Div(value, density));
     hn::Store(share, kFloat, &scatterings.light_share[i]);
     const VecF brightness = hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share);

@@ -155,7 +155,7 @@ def render(
     wavelengths: int = 4,
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
-    lobe_lines: bool = True,
+    lobe_splitting: bool = True,
     adaptive: bool = True,
     progress: Callable[[Progress], Any] | bool | None = None,
     threads: int = 0,
@@ -192,8 +192,8 @@ def render(
         shadow_roulette: whether shadow rays that bring little are cast by Russian roulette.
         near_light_lines: whether light of lights in or near media is found along lines that pass
             them, so that the variance has an end; else at scatterings alone.
-        lobe_lines: whether scatterings before a light that outshines others, like the sun, are
-            drawn from its end too, in the lobes of phase functions; else from the camera's alone.
+        lobe_splitting: whether paths split towards a light that outshines others, like the sun,
+            where phase functions have lobes.
         adaptive: whether pixels that are noisier take more samples, by a pilot: spp is their mean
             then. Not with a time below 20 s.
         progress: called some times a second with a `Progress`, by the thread that called `render`;
@@ -217,7 +217,7 @@ def render(
         layers=layers, crop=crop, tile=tile, tracker=tracker, estimator=estimator,
         interpolation=interpolation, absorption=absorption, emission=emission,
         max_scatterings=max_scatterings, wavelengths=wavelengths, shadow_roulette=shadow_roulette,
-        near_light_lines=near_light_lines, lobe_lines=lobe_lines, adaptive=adaptive,
+        near_light_lines=near_light_lines, lobe_splitting=lobe_splitting, adaptive=adaptive,
         threads=threads, simd=simd,
     )  # fmt: skip
     shown: Any = None
@@ -259,7 +259,7 @@ def radiance(
     wavelengths: int = 4,
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
-    lobe_lines: bool = True,
+    lobe_splitting: bool = True,
     threads: int = 0,
     simd: str = "best",
 ) -> Estimate:
@@ -274,7 +274,7 @@ def radiance(
         directions: of shape (..., 3), away from the sensor; scaled to unit vectors.
         spp: samples of each ray [64]; two at least, if the error is to mean something.
         seed, color, tracker, estimator, interpolation, absorption, emission, max_scatterings,
-        wavelengths, shadow_roulette, near_light_lines, lobe_lines, threads, simd: as `render`
+        wavelengths, shadow_roulette, near_light_lines, lobe_splitting, threads, simd: as `render`
             has them.
 
     Returns:
@@ -286,7 +286,7 @@ def radiance(
     """
     options = common_options(
         scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
-        max_scatterings, wavelengths, shadow_roulette, near_light_lines, lobe_lines,
+        max_scatterings, wavelengths, shadow_roulette, near_light_lines, lobe_splitting,
         threads, simd,
     )  # fmt: skip
     options.layers = "variance"

@@ -1,6 +1,6 @@
 // The power of furnaces: 2 % planted in the roulette of paths, in the shares of light sampling,
-// in those of the emission guide or in lines must show, with as many samples as make the shift 7
-// standard errors.
+// in those of the emission guide, in lines or in branches must show, with as many samples as make
+// the shift 7 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"ShadowRoulette", sky_furnace, &Planted::shadow_roulette},
                       Case{"SceneLightShare", core_furnace, &Planted::light_share},
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
-                      Case{"LobeLines", lit_layer, &Planted::lobe_line},
+                      Case{"LobeBranches", lit_layer, &Planted::branch},
                       Case{"NearLightLines", near_light, &Planted::near_line},
                       Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),
     [](const auto& test) { return std::string(test.param.name); });

@@ -35,7 +35,7 @@ struct PictureOptions {
   int threads = 0;
   std::size_t batch = 2048;
   bool near_light_lines = true;
-  bool lobe_lines = true;
+  bool lobe_splitting = true;
   double time_limit = 0;               ///< [s] by the clock; 0: none.
   std::function<double()> clock = {};  ///< RenderSettings::clock
 };
@@ -59,7 +59,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.buckets = built.picture.buckets;
   settings.batch = options.batch;
   settings.near_light_lines = options.near_light_lines;
-  settings.lobe_lines = options.lobe_lines;
+  settings.lobe_splitting = options.lobe_splitting;
   settings.time_limit = options.time_limit;
   settings.clock = options.clock;
   settings.max_scatterings = built.picture.max_scatterings;
