@@ -26,7 +26,12 @@ target_compile_options(freepath_options INTERFACE
 # A program loads only the libraries that it calls.
 target_link_options(freepath_options INTERFACE -Wl,--as-needed)
 if(FREEPATH_SANITIZE)
-  target_compile_options(freepath_options INTERFACE -fsanitize=${FREEPATH_SANITIZE}
-                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  set(flags -fsanitize=${FREEPATH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  if(FREEPATH_SANITIZE_ONLY)
+    # Warnings that come of the sanitizers are not looked at.
+    list(APPEND flags -O1 -g1 -Wno-error)
+    set(flags "$<$<IN_LIST:$<TARGET_PROPERTY:NAME>,${FREEPATH_SANITIZE_ONLY}>:${flags}>")
+  endif()
+  target_compile_options(freepath_options INTERFACE "${flags}")
   target_link_options(freepath_options INTERFACE -fsanitize=${FREEPATH_SANITIZE})
 endif()

@@ -178,17 +178,6 @@ LightResult trace_light(const std::vector<FluxScene>& scenes, FluxSettings setti
   return result;
 }
 
-/// The medium, or what it is in each of R, G and B where these differ.
-std::vector<VolumeMedium> channels_of(VolumeMedium medium, int super_voxel) {
-  if (medium.medium->is_grey()) return {std::move(medium)};
-  std::vector<VolumeMedium> channels;
-  channels.reserve(kChannels);
-  for (int c = 0; c < kChannels; ++c) {
-    channels.push_back(medium_in_channel(medium, c, super_voxel));
-  }
-  return channels;
-}
-
 void run(const FluxOptions& options) {
   if (!options.paths.empty() && !options.error.empty()) {
     fail("--paths and --error both say when to end; give one or the other");
@@ -214,8 +203,9 @@ void run(const FluxOptions& options) {
   }
   const std::vector<VolumePlan> plans = plan_volumes(options.volumes);
   std::vector<VolumeReport> report;
-  const std::vector<VolumeMedium> channels = channels_of(
-      make_medium(load_volumes(plans, report), options.super_voxel, sides), options.super_voxel);
+  const VolumeMedium volumes = make_medium(load_volumes(plans, report), options.super_voxel, sides);
+  const std::vector<VolumeMedium> channels =
+      grey_media(volumes, channels_of(*volumes.medium), options.super_voxel);
   const TrackerChoice choice = settle_tracker(settings.walk.tracker, *channels[0].medium);
   settings.walk.tracker = choice.tracker;
   if (!choice.reason.empty()) tell("auto: {}, since {}\n", choice.tracker, choice.reason);

@@ -1,5 +1,6 @@
 // The library of freepath's that reads NetCDF files (netcdf_codec.h).
 
+#include <H5Epublic.h>
 #include <netcdf.h>
 
 #include <algorithm>
@@ -14,11 +15,29 @@
 namespace freepath::io {
 namespace {
 
-/// Neither NetCDF nor HDF5 may be called by two threads at a time.
-std::mutex& netcdf_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+/// A thread that may call NetCDF and HDF5, which only one may at a time. While it does, HDF5 prints
+/// nothing: it would tell of attributes that NetCDF looks for, and NetCDF silences the thread alone
+/// that was the first.
+class NetcdfCaller {
+ public:
+  NetcdfCaller() : lock_(mutex()) {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~NetcdfCaller() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+  NetcdfCaller(const NetcdfCaller&) = delete;
+  NetcdfCaller& operator=(const NetcdfCaller&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::scoped_lock<std::mutex> lock_;
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
 
 /// The name of a type of numbers; empty for others.
 std::string type_name(nc_type type) {
@@ -52,7 +71,7 @@ class OpenNetcdf : public NetcdfHandle {
  public:
   explicit OpenNetcdf(int file) : file_(file) {}
   ~OpenNetcdf() override {
-    const std::scoped_lock lock(netcdf_mutex());
+    const NetcdfCaller caller;
     nc_close(file_);
   }
 
@@ -79,7 +98,7 @@ class OpenNetcdf : public NetcdfHandle {
 
   std::string read(std::size_t variable, std::span<const std::size_t> first,
                    std::span<const std::size_t> counts, std::span<double> values) override {
-    const std::scoped_lock lock(netcdf_mutex());
+    const NetcdfCaller caller;
     const int status = nc_get_vara_double(file_, static_cast<int>(variable), first.data(),
                                           counts.data(), values.data());
     // What no double holds is infinite in the result already.
@@ -140,15 +159,17 @@ class OpenNetcdf : public NetcdfHandle {
 
 std::unique_ptr<NetcdfHandle> open_netcdf_file(const std::string& path, NetcdfContents& contents,
                                                std::string& reason) {
-  int file = -1;
-  std::unique_lock lock(netcdf_mutex());
-  int status = nc_open(path.c_str(), NC_NOWRITE, &file);
   std::unique_ptr<OpenNetcdf> opened;
-  if (status == NC_NOERR) {
-    opened = std::make_unique<OpenNetcdf>(file);
-    status = opened->list(contents);
+  int status = NC_NOERR;
+  {
+    const NetcdfCaller caller;
+    int file = -1;
+    status = nc_open(path.c_str(), NC_NOWRITE, &file);
+    if (status == NC_NOERR) {
+      opened = std::make_unique<OpenNetcdf>(file);
+      status = opened->list(contents);
+    }
   }
-  lock.unlock();
   if (status == NC_NOERR) return opened;
   reason = nc_strerror(status);
   return nullptr;

@@ -185,17 +185,22 @@ VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel, const Per
   return result;
 }
 
-VolumeMedium medium_in_channel(const VolumeMedium& medium, int channel, int super_voxel) {
-  std::vector<Component> components = medium.medium->components();
-  for (Component& component : components) {
-    component.sigma_a = Rgb(component.sigma_a[channel]);
-    component.sigma_s = Rgb(component.sigma_s[channel]);
-    component.emission = Rgb(component.emission[channel]);
-    component.radiance.fill(RadianceField(component.radiance[channel]));
+std::vector<VolumeMedium> grey_media(const VolumeMedium& medium, const MediumChannels& channels,
+                                     int super_voxel) {
+  if (channels.is_grey()) return {medium};
+  std::vector<VolumeMedium> media(static_cast<std::size_t>(channels.count), medium);
+  for (int c = 0; c < channels.count; ++c) {
+    std::vector<Component> components = medium.medium->components();
+    for (std::size_t k = 0; k < components.size(); ++k) {
+      const ComponentChannels& from = channels.components[k];
+      components[k].sigma_a = Rgb(from.sigma_a[c]);
+      components[k].sigma_s = Rgb(from.sigma_s[c]);
+      components[k].emission = Rgb(from.emission[c]);
+      components[k].radiance.fill(from.radiance[c]);
+    }
+    media[c].medium = std::make_shared<const Medium>(std::move(components), super_voxel);
   }
-  VolumeMedium result = medium;
-  result.medium = std::make_shared<const Medium>(std::move(components), super_voxel);
-  return result;
+  return media;
 }
 
 void check_optical_depth(const Medium& medium) {

@@ -7,6 +7,7 @@
 
 #include "freepath/lights/thermal_radiance.h"
 #include "freepath/media/medium.h"
+#include "freepath/media/medium_channels.h"
 #include "freepath/paths/scene_medium.h"
 #include "freepath/scene/periodic_sides.h"
 #include "freepath/scene/volume.h"
@@ -35,9 +36,11 @@ void set_thermal_emission(const TemperatureEmission& emission, const Rgb& factor
 VolumeMedium make_medium(std::vector<Volume> volumes, int super_voxel,
                          const PeriodicSides& sides = {});
 
-/// The medium as it is in one of the channels R, G and B: grey.
+/// Grey media, one for each channel: what the medium is there. One alone where all are the same.
+/// @param channels coefficients of its components
 /// @param super_voxel edge of a super-voxel [voxels], 0 for automatic
-VolumeMedium medium_in_channel(const VolumeMedium& medium, int channel, int super_voxel);
+std::vector<VolumeMedium> grey_media(const VolumeMedium& medium, const MediumChannels& channels,
+                                     int super_voxel);
 
 /// Checks that single precision tells the tentative collisions of a walk through a medium apart.
 /// @throws Error, naming the densest grid, for an optical depth across it that is too large

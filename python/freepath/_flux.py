@@ -114,10 +114,14 @@ def slab(
 class FluxMap:
     """One quantity, of the whole domain and column by column.
 
+    Where the medium has several channels, arrays have an axis of channels, the last.
+
     Attributes:
-        all: as a fraction of what falls on the domain.
+        all: as a fraction of what falls on the domain: mean and error, numbers or of shape
+            (channels,).
         columns: as fractions of what falls on each column: mean and error, float64 of shape
-            (n, m) along the two level axes, x and y where z is up, x and z where y is.
+            (n, m) or (n, m, channels) along the two level axes, x and y where z is up, x and z
+            where y is.
     """
 
     all: Estimate
@@ -128,6 +132,9 @@ class FluxMap:
 class Fluxes:
     """What a medium that repeats sideways does to light from above.
 
+    Each channel is a grey medium with paths of its own. Channels share their random numbers, so
+    that noise hardly tells them apart.
+
     Attributes:
         reflectance: what leaves by the top.
         transmittance: what arrives at the bottom, scattered or not, over a ground however often.
@@ -135,8 +142,9 @@ class Fluxes:
         absorptance: what stays in the medium.
         radiances: of each view π I / F, where I is the radiance that leaves towards it and F the flux
             that falls in; light that never scattered is in no view.
-        largest_weight: largest magnitude of a weight that left; far above 1, the errors say little.
-        paths: that were traced.
+        largest_weight: largest magnitude of a weight that left, of all channels; far above 1, the
+            errors say little.
+        paths: that were traced, in each channel.
         tracker: the method that was taken.
     """
 
@@ -172,7 +180,7 @@ def flux(
     """Trace light from above through a medium that repeats sideways (docs/flux.md).
 
     Args:
-        medium: a `Medium` whose coefficients are one number each, or a component or field of one.
+        medium: a `Medium` of any number of channels, or a component or field of one.
         sun: zenith angle and azimuth (clockwise from north) [degrees]; None: the same radiance from
             all over the sky.
         up: axis that points up, "z" or "y".
@@ -196,8 +204,7 @@ def flux(
         Fluxes of the whole domain and of each column, with standard errors.
 
     Raises:
-        Error: for values out of range, voxels that do not fit the period, and coefficients that
-            differ between channels.
+        Error: for values out of range, voxels that do not fit the period, and a medium that emits.
     """
     options = _freepath.FluxOptions()
     options.walk = walk_options(
@@ -221,12 +228,21 @@ def flux(
     options.views = [angles(view, "views", 0, 180) for view in views]
     options.paths = as_count(paths, "paths", 1, 10**15)
     options.threads = threads_of(threads)
-    result = _freepath.flux(as_medium(medium)._core, options)
-    radiances = tuple(_map(radiance) for radiance in result.pop("radiances"))
-    parts: dict[str, Any] = {
-        k: _map(v) if isinstance(v, tuple) else v for k, v in result.items()
+    core = as_medium(medium)._core
+    results, used = _freepath.flux(core, options)
+    if len(results) < core.channel_count:  # all are the same
+        results = results * core.channel_count
+    maps = {
+        name: _map([result[name] for result in results])
+        for name in ("reflectance", "transmittance", "unscattered", "absorptance")
     }
-    return Fluxes(radiances=radiances, **parts)
+    return Fluxes(
+        **maps,
+        radiances=tuple(map(_map, zip(*(result["radiances"] for result in results)))),
+        largest_weight=max(result["largest_weight"] for result in results),
+        paths=results[0]["paths"],
+        tracker=used,
+    )
 
 
 def _for_layers(values: Any, what: str, count: int) -> NDArray[Any]:
@@ -255,6 +271,11 @@ def angles(pair: Any, what: str, least: float, most: float) -> tuple[float, floa
     return zenith, azimuth
 
 
-def _map(parts: tuple[Any, Any, Any]) -> FluxMap:
-    whole, means, errors = parts
-    return FluxMap(Estimate(*whole), Estimate(means.T, errors.T))
+def _map(channels: Sequence[tuple[Any, Any, Any]]) -> FluxMap:
+    """Return a map of what it is in each channel."""
+    wholes, means, errors = zip(*channels)
+    if len(channels) == 1:
+        return FluxMap(Estimate(*wholes[0]), Estimate(means[0].T, errors[0].T))
+    mean, error = (np.array([whole[i] for whole in wholes]) for i in (0, 1))
+    # Rows of channels are those of columns turned about.
+    return FluxMap(Estimate(mean, error), Estimate(np.array(means).T, np.array(errors).T))

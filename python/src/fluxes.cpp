@@ -111,32 +111,8 @@ nb::tuple map_to_python(const FluxMap& map, const std::array<uint32_t, 2>& count
                         to_numpy(std::move(errors), {rows, row}));
 }
 
-nb::dict flux(const PythonMedium& medium, const FluxOptions& options) {
-  if (medium.channels.emits()) {
-    fail("what a medium emits is no part of these fluxes: leave out emission and temperature");
-  }
-  const UpAxis up = parse_up_axis(options.up);
-  FluxSettings settings;
-  settings.paths = options.paths;
-  settings.threads = options.threads;
-  settings.walk = walk_settings(options.walk);
-  std::array<uint32_t, 2> counts{};
-  const FluxResult result = result_interruptibly([&](const std::atomic<bool>& stop) {
-    const VolumeMedium volumes =
-        medium.as_volumes(periodic_sides(up == UpAxis::kY ? "xz" : "xy", options.domain));
-    settings.walk.tracker = settle_tracker(settings.walk.tracker, *volumes.medium).tracker;
-    std::optional<Ground> ground;
-    if (options.ground_albedo) {
-      ground = Ground{Rgb(*options.ground_albedo), options.ground_height, up};
-    }
-    FluxScene scene = make_flux_scene(volumes, up, ground, settings.walk.interpolation);
-    if (options.columns) scene.meter.counts = *options.columns;
-    counts = scene.meter.counts;
-    for (const auto& view : options.views) scene.meter.views.push_back(direction_of(view, up));
-    if (options.sun) scene.meter.beam = -direction_of(*options.sun, up);
-    return trace_flux(scene.scene, scene.meter, settings,
-                      [&](uint64_t, uint64_t) { return !stop; });
-  });
+/// Fluxes of a grey medium by name.
+nb::dict to_python(const FluxResult& result, const std::array<uint32_t, 2>& counts) {
   nb::dict fluxes;
   fluxes["reflectance"] = map_to_python(result.reflectance, counts);
   fluxes["transmittance"] = map_to_python(result.transmittance, counts);
@@ -147,8 +123,43 @@ nb::dict flux(const PythonMedium& medium, const FluxOptions& options) {
   fluxes["radiances"] = radiances;
   fluxes["largest_weight"] = result.largest_weight;
   fluxes["paths"] = result.paths;
-  fluxes["tracker"] = settings.walk.tracker;
   return fluxes;
+}
+
+/// @return the fluxes of each channel, or of one for all where they are the same, and the tracker
+nb::tuple flux(const PythonMedium& medium, const FluxOptions& options) {
+  if (medium.channels.emits()) {
+    fail("what a medium emits is no part of these fluxes: leave out emission and temperature");
+  }
+  const UpAxis up = parse_up_axis(options.up);
+  FluxSettings settings;
+  settings.paths = options.paths;
+  settings.threads = options.threads;
+  settings.walk = walk_settings(options.walk);
+  std::array<uint32_t, 2> counts{};
+  const auto results = result_interruptibly([&](const std::atomic<bool>& stop) {
+    const std::vector<VolumeMedium> media =
+        medium.as_grey_volumes(periodic_sides(up == UpAxis::kY ? "xz" : "xy", options.domain));
+    settings.walk.tracker = settle_tracker(settings.walk.tracker, *media[0].medium).tracker;
+    std::optional<Ground> ground;
+    if (options.ground_albedo) {
+      ground = Ground{Rgb(*options.ground_albedo), options.ground_height, up};
+    }
+    std::vector<FluxResult> channels;
+    for (const VolumeMedium& grey : media) {
+      FluxScene scene = make_flux_scene(grey, up, ground, settings.walk.interpolation);
+      if (options.columns) scene.meter.counts = *options.columns;
+      counts = scene.meter.counts;
+      for (const auto& view : options.views) scene.meter.views.push_back(direction_of(view, up));
+      if (options.sun) scene.meter.beam = -direction_of(*options.sun, up);
+      channels.push_back(trace_flux(scene.scene, scene.meter, settings,
+                                    [&](uint64_t, uint64_t) { return !stop; }));
+    }
+    return channels;
+  });
+  nb::list channels;
+  for (const FluxResult& result : results) channels.append(to_python(result, counts));
+  return nb::make_tuple(channels, settings.walk.tracker);
 }
 
 }  // namespace

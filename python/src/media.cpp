@@ -49,17 +49,13 @@ Vec3d PythonMedium::origin() const {
   return std::isfinite(middle.length2()) ? middle : Vec3d(0);
 }
 
-VolumeMedium PythonMedium::as_volumes(const PeriodicSides& sides) const {
-  if (!is_renderable()) {
-    fail("the medium has {} channels; scenes take one, or three for R, G and B", channels.count);
-  }
-  if (!sides.any()) {
-    check_optical_depth(*medium);
-    return {.medium = medium, .temperatures = temperatures, .sides = {}};
-  }
+namespace {
+
+/// The medium, repeated: copies of its voxels.
+VolumeMedium repeated(const PythonMedium& given, const PeriodicSides& sides) {
   std::vector<Volume> volumes;
-  for (std::size_t k = 0; k < medium->components().size(); ++k) {
-    const Component& component = medium->components()[k];
+  for (std::size_t k = 0; k < given.medium->components().size(); ++k) {
+    const Component& component = given.medium->components()[k];
     if (component.density->function) {
       fail("'{}' is computed, and can't be repeated: bake it first", component.density->name);
     }
@@ -71,13 +67,28 @@ VolumeMedium PythonMedium::as_volumes(const PeriodicSides& sides) const {
     Volume& volume = volumes.emplace_back();
     volume.densities = {*component.density};
     volume.optics = std::move(optics);
-    if (const auto& temperature = temperatures[k]) {
+    if (const auto& temperature = given.temperatures[k]) {
       volume.temperature = temperature->field;
       volume.optics.temperature_scale = temperature->scale;
       volume.optics.temperature_offset = temperature->offset;
     }
   }
-  return make_medium(std::move(volumes), super_voxel, sides);
+  return make_medium(std::move(volumes), given.super_voxel, sides);
+}
+
+}  // namespace
+
+VolumeMedium PythonMedium::as_volumes(const PeriodicSides& sides) const {
+  if (!is_renderable()) {
+    fail("the medium has {} channels; scenes take one, or three for R, G and B", channels.count);
+  }
+  if (sides.any()) return repeated(*this, sides);
+  check_optical_depth(*medium);
+  return {.medium = medium, .temperatures = temperatures, .sides = {}};
+}
+
+std::vector<VolumeMedium> PythonMedium::as_grey_volumes(const PeriodicSides& sides) const {
+  return grey_media(repeated(*this, sides), channels, super_voxel);
 }
 
 namespace {

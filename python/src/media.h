@@ -28,6 +28,10 @@ struct PythonMedium {
   /// The same as scenes take it, repeated along `sides`, for which its voxels are copied.
   /// @throws Error for channels that are not R, G and B, and as make_medium
   VolumeMedium as_volumes(const PeriodicSides& sides = {}) const;
+  /// Grey media that repeat along `sides`, one for each channel, of which there may be any number;
+  /// one alone where all are the same.
+  /// @throws Error as make_medium
+  std::vector<VolumeMedium> as_grey_volumes(const PeriodicSides& sides) const;
 };
 
 }  // namespace freepath::python

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from clouds import ENGINES, write_cloud
 
 import freepath as fp
 
@@ -111,6 +112,15 @@ def test_files_keep_field_and_transform(tmp_path):
         fp.Field.open(tmp_path / "smoke.vdb", grid="fire")
     with pytest.raises(fp.Error, match="missing.vdb"):
         fp.Field.open(tmp_path / "missing.vdb")
+
+
+@pytest.mark.parametrize("kind", ENGINES)
+def test_clouds_in_netcdf_are_extinctions_in_meters(kind, tmp_path):
+    extinction = write_cloud(tmp_path / "cloud.nc", kind)
+    field = fp.Field.open(tmp_path / "cloud.nc")
+    assert field.name == "extinction"
+    assert np.allclose(field.to_array(), extinction, rtol=1e-6)
+    assert np.allclose(np.diag(field.transform), [50, 25, 40, 1])
 
 
 def with_value(value):

@@ -1,5 +1,8 @@
 """Fluxes against what is known of them."""
 
+import json
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -97,5 +100,47 @@ def test_bad_fluxes_have_one_clear_error(cloud):
     ]:
         with pytest.raises(fp.Error, match=message):
             fp.flux(cloud, **options)
-    with pytest.raises(fp.Error, match="R, G and B"):
-        fp.flux(fp.Component(cloud, sigma_s=[1, 2, 3]), paths=100)
+    with pytest.raises(fp.Error, match="emission"):
+        fp.flux(fp.Component(cloud, sigma_a=[1, 2, 3], emission=[0, 0, 1]), paths=100)
+
+
+def in_channel(estimate, channel):
+    return estimate.mean[..., channel], estimate.error[..., channel]
+
+
+def test_channels_are_grey_media_of_their_own(cloud):
+    sigma_s, sigma_a = np.linspace(0.25, 2, fp.max_channels), 0.25
+    how = {"sun": (30, 90), "views": [(0, 0), (60, 10)], "ground": 0.25, "paths": 1000, "seed": 3}
+    all_of_them = fp.flux(fp.Component(cloud, sigma_s=sigma_s, sigma_a=sigma_a), **how)
+    largest = []
+    for channel, scattering in enumerate(sigma_s):
+        grey = fp.flux(fp.Component(cloud, sigma_s=scattering, sigma_a=sigma_a), **how)
+        largest.append(grey.largest_weight)
+        names = ("reflectance", "transmittance", "unscattered", "absorptance")
+        pairs = [(getattr(all_of_them, name), getattr(grey, name)) for name in names]
+        for colors, own in [*pairs, *zip(all_of_them.radiances, grey.radiances, strict=True)]:
+            assert colors.columns.mean.shape == (4, 5, fp.max_channels)
+            assert in_channel(colors.all, channel) == own.all[:2]
+            assert np.array_equal(in_channel(colors.columns, channel), own.columns[:2])
+    assert all_of_them.largest_weight == max(largest) and all_of_them.paths == 1000
+    same = fp.flux(fp.Component(cloud, sigma_s=[0.25] * 3, sigma_a=sigma_a), **how)
+    assert np.array_equal(in_channel(same.reflectance.all, 2), in_channel(all_of_them.reflectance.all, 0))
+
+
+def test_channels_are_those_of_the_program(program, cloud, tmp_path):
+    cloud.save(tmp_path / "cloud.vdb")
+    fluxes = fp.flux(
+        fp.Component(cloud, sigma_s=[0.5, 1, 2], sigma_a=0.25), sun=(40, 270), views=[(20, 30)],
+        paths=2000, seed=5,
+    )  # fmt: skip
+    theirs = json.loads(subprocess.check_output([
+        program, "flux", tmp_path / "cloud.vdb", "--sigma-s", "0.5,1,2", "--sigma-a", "0.25",
+        "--sun-zenith", "40", "--view", "20,30", "--paths", "2000", "--seed", "5", "--json",
+    ]))["channels"]  # fmt: skip
+    for channel, name in enumerate("RGB"):
+        of_all = in_channel(fluxes.absorptance.all, channel)
+        assert of_all == (theirs[name]["absorptance"], theirs[name]["absorptance_error"])
+        through = in_channel(fluxes.transmittance.columns, channel)[0]
+        assert np.array_equal(through.T, theirs[name]["columns"]["transmittance"])
+        view = theirs[name]["radiances"][0]
+        assert fluxes.radiances[0].all.mean[channel] == view["radiance"]

@@ -17,7 +17,13 @@
 #include <string_view>
 #include <vector>
 
+#include "freepath/io/netcdf_codec.h"
 #include "tests/fuzz/volume_checks.h"
+
+extern "C" const freepath::io::NetcdfCodec* freepath_netcdf_codec();
+
+// In place of that which loads it: it is part of this program.
+const freepath::io::NetcdfCodec& freepath::io::netcdf_codec() { return *freepath_netcdf_codec(); }
 
 namespace freepath::fuzz {
 namespace {

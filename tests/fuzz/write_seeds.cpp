@@ -13,11 +13,13 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "freepath/base/error.h"
 #include "freepath/io/image.h"
 #include "freepath/io/image_plain.h"
 #include "tests/io/dense_files.h"
+#include "tests/io/netcdf_files.h"
 #include "tests/io/volume_files.h"
 #include "tests/io/volume_oddities.h"
 
@@ -83,6 +85,21 @@ void write_dense_seeds(const fs::path& folder) {
   write_text(folder / "mha_packed", metaimage_file(true));
   write_text(folder / "nii", nifti_file(1, true));
   write_text(folder / "nii2", nifti_file(2, false, true));
+}
+
+/// The classic formats, and NetCDF-4 in HDF5.
+void write_netcdf_seeds(const fs::path& folder) {
+  const std::vector<CloudVariable> variables = cloud();
+  write_netcdf(folder / "classic", variables, 0);
+  write_netcdf(folder / "offset", variables, NC_64BIT_OFFSET);
+  write_netcdf(folder / "data", variables, NC_64BIT_DATA);
+  write_netcdf(folder / "netcdf4", variables, NC_NETCDF4);
+  std::vector<CloudVariable> packed = variables;
+  for (CloudVariable& variable : packed) {
+    if (variable.dimensions.size() == 4) variable.type = NC_SHORT;
+    variable.numbers = {{"scale_factor", 1}, {"_FillValue", 0}};
+  }
+  write_netcdf(folder / "packed", packed, 0);
 }
 
 /// An input for each of the files in a folder, without a change, and one whose change has no bytes,
@@ -166,8 +183,8 @@ void write_image_seeds(const fs::path& folder) {
 }
 
 void write_seeds(const fs::path& folder) {
-  for (const char* kind :
-       {"vdb", "vdb_bases", "nvdb", "nvdb_bases", "dense", "dense_bases", "ply", "image"}) {
+  for (const char* kind : {"vdb", "vdb_bases", "nvdb", "nvdb_bases", "dense", "dense_bases",
+                           "netcdf", "netcdf_bases", "ply", "image"}) {
     fs::remove_all(folder / kind);
     fs::create_directories(folder / kind);
   }
@@ -177,6 +194,8 @@ void write_seeds(const fs::path& folder) {
   write_changes(folder / "nvdb_bases", folder / "nvdb");
   write_dense_seeds(folder / "dense_bases");
   write_changes(folder / "dense_bases", folder / "dense");
+  write_netcdf_seeds(folder / "netcdf_bases");
+  write_changes(folder / "netcdf_bases", folder / "netcdf");
   write_ply_seeds(folder / "ply");
   write_image_seeds(folder / "image");
 }

@@ -4,115 +4,19 @@
 #include <netcdf.h>
 
 #include <cmath>
-#include <functional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "freepath/io/volume.h"
-#include "tests/io/dense_files.h"
+#include "tests/io/netcdf_files.h"
 #include "tests/io/volume_files.h"
 
 namespace freepath {
 namespace {
 
 using namespace testing_volumes;  // NOLINT(google-build-using-namespace)
-
-constexpr int kTimes = 2, kNx = 5, kNy = 4, kNz = 6;
-
-/// A variable to be written.
-struct CloudVariable {
-  std::string name;
-  std::vector<std::string> dimensions;
-  std::vector<double> values;
-  std::vector<std::pair<std::string, std::string>> texts{};
-  std::vector<std::pair<std::string, double>> numbers{};
-  nc_type type = NC_DOUBLE;
-};
-
-/// A file with these variables; times are records where the format has them.
-void write_netcdf(const std::filesystem::path& path, const std::vector<CloudVariable>& variables,
-                  int mode = NC_NETCDF4) {
-  int file = 0;
-  ASSERT_EQ(nc_create(path.c_str(), NC_CLOBBER | mode, &file), NC_NOERR);
-  const std::pair<const char*, std::size_t> sizes[] = {
-      {"time", NC_UNLIMITED}, {"z", kNz}, {"y", kNy}, {"x", kNx}};
-  for (const auto& [name, size] : sizes) {
-    int id = 0;
-    ASSERT_EQ(nc_def_dim(file, name, size, &id), NC_NOERR);
-  }
-  std::vector<int> ids;
-  for (const CloudVariable& variable : variables) {
-    std::vector<int> dimensions;
-    for (const std::string& name : variable.dimensions) {
-      dimensions.emplace_back();
-      ASSERT_EQ(nc_inq_dimid(file, name.c_str(), &dimensions.back()), NC_NOERR);
-    }
-    ids.emplace_back();
-    ASSERT_EQ(nc_def_var(file, variable.name.c_str(), variable.type,
-                         static_cast<int>(dimensions.size()), dimensions.data(), &ids.back()),
-              NC_NOERR);
-    for (const auto& [name, text] : variable.texts) {
-      nc_put_att_text(file, ids.back(), name.c_str(), text.size(), text.c_str());
-    }
-    for (const auto& [name, number] : variable.numbers) {
-      nc_put_att_double(file, ids.back(), name.c_str(),
-                        name == "_FillValue" ? variable.type : NC_DOUBLE, 1, &number);
-    }
-  }
-  ASSERT_EQ(nc_enddef(file), NC_NOERR);
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    const std::vector<std::size_t> first(variables[i].dimensions.size(), 0);
-    std::vector<std::size_t> counts;
-    for (const std::string& name : variables[i].dimensions) {
-      counts.push_back(name == "time" ? kTimes : name == "z" ? kNz : name == "y" ? kNy : kNx);
-    }
-    ASSERT_EQ(
-        nc_put_vara_double(file, ids[i], first.data(), counts.data(), variables[i].values.data()),
-        NC_NOERR);
-  }
-  ASSERT_EQ(nc_close(file), NC_NOERR);
-}
-
-/// Values of a function over (time, z, y, x).
-std::vector<double> sampled(const std::function<double(int, int, int, int)>& f) {
-  std::vector<double> values;
-  for (int t = 0; t < kTimes; ++t) {
-    for (int z = 0; z < kNz; ++z) {
-      for (int y = 0; y < kNy; ++y) {
-        for (int x = 0; x < kNx; ++x) values.push_back(f(t, z, y, x));
-      }
-    }
-  }
-  return values;
-}
-
-double water(int t, int z, int y, int x) { return 1e-4 * (1 + t + 2 * x + 3 * y + 5 * z); }
-double radius(int /*t*/, int z, int /*y*/, int /*x*/) { return 5e-6 + 1e-6 * z; }
-/// 3/2 LWC/(ρ_w r_e) with ρ_w = 1000 kg/m³.
-double extinction(int t, int z, int y, int x) {
-  return 1.5 * water(t, z, y, x) / (1000 * radius(t, z, y, x));
-}
-
-std::vector<double> even(int count, double first, double step) {
-  std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) values.push_back(first + step * i);
-  return values;
-}
-
-/// A cloud with x and z in m, y in km; lwc in kg/m³ and re in µm.
-std::vector<CloudVariable> cloud() {
-  return {{"time", {"time"}, {0, 60}, {{"units", "seconds since 2000-01-01"}}},
-          {"x", {"x"}, even(kNx, 100, 50), {{"units", "m"}}},
-          {"y", {"y"}, even(kNy, 0.2, 0.025), {{"units", "km"}}},
-          {"z", {"z"}, even(kNz, 300, 40), {{"units", "meters"}}},
-          {"lwc", {"time", "z", "y", "x"}, sampled(water), {{"units", "kg m-3"}}},
-          {"re",
-           {"time", "z", "y", "x"},
-           sampled([](int t, int z, int y, int x) { return 1e6 * radius(t, z, y, x); }),
-           {{"units", "um"}}}};
-}
 
 CloudVariable& find_variable(std::vector<CloudVariable>& variables, const std::string& name) {
   for (CloudVariable& variable : variables) {
@@ -159,6 +63,14 @@ TEST(NetcdfVolumes, WaterAndRadiusGiveExtinctionInEveryFormat) {
     EXPECT_NEAR(load_named(folder / "a.nc", "re").field.voxels.value(Vec3i(0, 0, 3)), 8, 1e-6);
     EXPECT_EQ(list_grids(folder / "a.nc").size(), 3U);
   }
+}
+
+TEST(NetcdfVolumes, AreReadByAnyThreadWithoutAWord) {
+  const TemporaryFolder folder;
+  write_netcdf(folder / "a.nc", cloud());
+  ::testing::internal::CaptureStderr();
+  std::thread([&] { expect_extinction(load_named(folder / "a.nc")); }).join();
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(NetcdfVolumes, UnitsOfWaterAndRadiusAreToldApart) {
