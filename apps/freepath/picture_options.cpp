@@ -155,6 +155,11 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
       .add_flag("--no-near-light-lines", o.no_near_light_lines,
                 "Find lights in or near media at scatterings alone, not along lines that pass them")
       ->group("Method");
+  command
+      .add_flag("--no-light-through-glass", o.no_light_through_glass,
+                "Find lamps from within spheres of glass by chance alone, not where light to them "
+                "is refracted")
+      ->group("Method");
 }
 
 }  // namespace
@@ -284,6 +289,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.batch = options.batch;
   settings.shadow_roulette = !options.all_shadow_rays;
   settings.near_light_lines = !options.no_near_light_lines;
+  settings.light_through_glass = !options.no_light_through_glass;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.absorption = parse_absorption(options.absorption);

@@ -137,7 +137,10 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   if (settings.shadow_roulette) shadow_guide.emplace(factory, settings.walk.seed);
   std::optional<NearLights> near_lights;
   if (settings.near_light_lines) near_lights.emplace(factory, settings.walk.seed);
+  std::optional<GlassSpheres> glass_spheres;
+  if (settings.light_through_glass) glass_spheres.emplace(scene);
   PathSetup setup;
+  setup.glass_spheres = glass_spheres && !glass_spheres->is_empty() ? &*glass_spheres : nullptr;
   setup.near_lights = near_lights && !near_lights->is_empty() ? &*near_lights : nullptr;
   setup.shadow_guide = shadow_guide ? &*shadow_guide : nullptr;
   setup.scene = &scene;

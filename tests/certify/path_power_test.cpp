@@ -139,6 +139,16 @@ FilmMean near_light(uint32_t samples, uint64_t seed) {
   return {found.mean / expected, found.error / expected};
 }
 
+/// A ball of glass with fog in it.
+FilmMean glass_furnace(uint32_t samples, uint64_t seed) {
+  return render_furnace(
+      R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 1 1 1 ] )"
+      R"("rgb sigma_a" [ 0 0 0 ] "float g" 0.5)"
+      "\nMediumInterface \"fog\" \"\" Material \"dielectric\" \"float eta\" 1.4\n"
+      "Shape \"sphere\" \"float radius\" 1\n",
+      samples, seed);
+}
+
 struct Case {
   const char* name;
   Furnace furnace;
@@ -178,6 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"SceneLightShare", core_furnace, &Planted::light_share},
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
                       Case{"NearLightLines", near_light, &Planted::near_line},
+                      Case{"LightThroughGlass", glass_furnace, &Planted::glass},
                       Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),
     [](const auto& test) { return std::string(test.param.name); });
 
