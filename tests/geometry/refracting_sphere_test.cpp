@@ -96,7 +96,9 @@ TEST(RefractingSphere, SpreadIsThatOfNeighbouringRays) {
       const double sine2 = eta * eta * (1 - entry->cosine * entry->cosine);
       if (sine2 > 0.98) continue;
       EXPECT_NEAR(entry->spread / area, 1, 2e-3) << eta;
-      if (eta == 1) EXPECT_NEAR(entry->spread / (outside - inside).length2(), 1, 1e-6);
+      if (eta == 1) {
+        EXPECT_NEAR(entry->spread / (outside - inside).length2(), 1, 1e-6);
+      }
     }
   }
 }
@@ -124,7 +126,9 @@ TEST(RefractingSphere, RaysThatLeaveKnowWhetherTheirWayIsFound) {
       }
     }
     EXPECT_GT(known, 1000);
-    if (eta > 1.4) EXPECT_GT(unknown, 20);
+    if (eta > 1.4) {
+      EXPECT_GT(unknown, 20);
+    }
   }
 }
 
