@@ -17,9 +17,9 @@ const std::string kLook =
 const std::string kLamps =
     R"(LightSource "point" "rgb I" [ 1 1 1 ] "point3 from" [ -2 1 -2 ]
 AttributeBegin AreaLightSource "diffuse" "rgb L" [ 9 8 7 ] Material "diffuse" "rgb reflectance" [ 0 0 0 ]
-  Translate 0.6 2.4 0.2 Rotate 90 1 0 0 Shape "disk" "float radius" 0.5 AttributeEnd
+  Translate 0.6 2.2 0.2 Rotate 90 1 0 0 Shape "disk" "float radius" 1.6 AttributeEnd
 AttributeBegin AreaLightSource "diffuse" "rgb L" [ 7 9 4 ] Material "diffuse" "rgb reflectance" [ 0 0 0 ]
-  Translate -1.6 0.2 0.8 Shape "sphere" "float radius" 0.3 AttributeEnd
+  Translate -2.4 0.2 0.9 Shape "sphere" "float radius" 1 AttributeEnd
 )";
 
 std::string juice(double sigma_s, double sigma_a, double g) {
