@@ -36,6 +36,7 @@ struct PictureOptions {
   uint32_t max_scatterings = 0;  ///< 0: no limit.
   bool all_shadow_rays = false;
   bool no_near_light_lines = false;
+  bool no_lobe_splitting = false;
   bool no_light_through_glass = false;
   uint64_t seed = 0;
   int threads = 0;

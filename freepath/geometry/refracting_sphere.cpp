@@ -37,12 +37,12 @@ class RefractingSphere::Plane {
   double angle() const { return angle_; }
   /// What is outside, as seen along the ray that leaves at an angle.
   struct Seen {
-    double angle;       ///< Of where it passes the distance of the point outside.
-    double slope;       ///< Derivative of that.
-    double cosine;      ///< At the sphere, inside.
-    double incidence;   ///< Cosine to the direction from the centre at the point outside.
-    double sine_over;   ///< Sine of the angle at the point inside over that at the centre.
-    double turn;        ///< Derivative of the former angle by the latter.
+    double angle;      ///< Of where it passes the distance of the point outside.
+    double slope;      ///< Derivative of that.
+    double cosine;     ///< At the sphere, inside.
+    double incidence;  ///< Cosine to the direction from the centre at the point outside.
+    double sine_over;  ///< Sine of the angle at the point inside over that at the centre.
+    double turn;       ///< Derivative of the former angle by the latter.
   };
   Seen seen_at(double phi) const {
     const double c = std::cos(phi);
@@ -57,8 +57,8 @@ class RefractingSphere::Plane {
     seen.incidence = std::sqrt(1 - far * far);
     constexpr double kLeast = 1e-9;  // keeps the slope finite where reflection becomes total
     const double leaving = std::max(std::sqrt(1 - refracted * refracted), kLeast);
-    seen.slope = 1 + eta_ * seen.cosine * (1 / leaving - 1 / (l_ * seen.incidence)) * p_ *
-                         (c - p_) / d2;
+    seen.slope =
+        1 + eta_ * seen.cosine * (1 / leaving - 1 / (l_ * seen.incidence)) * p_ * (c - p_) / d2;
     seen.sine_over = 1 / d;
     seen.turn = (1 - p_ * c) / d2;
     return seen;

@@ -10,10 +10,10 @@ namespace freepath {
 /// Where light from outside enters a sphere on its way to a point inside.
 struct SphereEntry {
   Vec3d position;
-  Vec3d normal;        ///< Unit, outward.
-  double cosine = 0;   ///< Cosine of the refracted ray to the normal, inside.
-  double spread = 0;   ///< Area at the point outside, across the ray, over solid angle at the point
-                       ///< inside; the square of the distance if nothing is refracted.
+  Vec3d normal;       ///< Unit, outward.
+  double cosine = 0;  ///< Cosine of the refracted ray to the normal, inside.
+  double spread = 0;  ///< Area at the point outside, across the ray, over solid angle at the point
+                      ///< inside; the square of the distance if nothing is refracted.
 };
 
 /// A sphere filled with one refractive index.

@@ -23,8 +23,8 @@ struct GlassSphere {
 /// Light of a lamp that a sphere of glass refracts to a point inside.
 struct GlassLight {
   SphereEntry entry;
-  Vec3f towards;        ///< Direction in which it is seen from inside, unit [world].
-  float transmitted;    ///< GlassSphere::transmitted
+  Vec3f towards;      ///< Direction in which it is seen from inside, unit [world].
+  float transmitted;  ///< GlassSphere::transmitted
   /// Solid angle at the point inside, would nothing be refracted, over the one in which the light
   /// is seen: densities of directions are multiplied by it.
   float density_ratio;

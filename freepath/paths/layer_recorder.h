@@ -44,6 +44,11 @@ class LayerRecorder {
   }
   /// A path has collected radiance that is scattered once more than the path has been by now.
   void ahead(uint32_t sample, const Rgb& radiance) { add(ahead_[sample], radiance); }
+  /// A path has ended, of which a branch goes on.
+  void end_part(uint32_t sample, uint32_t scatterings, const Rgb& radiance) {
+    if (scatterings == 1) add(samples_[sample].at_most_once, radiance - ahead_[sample]);
+    ahead_[sample] = radiance;  // what the branch finds comes on top of it
+  }
   /// A path has ended.
   void end(uint32_t sample, uint32_t scatterings, const Rgb& radiance) {
     const Rgb so_far = radiance - ahead_[sample];

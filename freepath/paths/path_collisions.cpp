@@ -51,7 +51,7 @@ void PathWavefront::set_scatterer(const ScenePath& path, std::size_t component) 
   const MediumWalkers::Origin origin = scatterer_of(path, component);
   const PhaseFunction& phase = scene_.media[origin.medium].phase(origin.component);
   const HenyeyGreenstein* const function = phase.as_henyey_greenstein();
-  scatterer_ = {component, &phase, function != nullptr ? function->g() : 0,
+  scatterer_ = {component, &phase, function != nullptr ? function->g() : phase.mean_cosine(),
                 function != nullptr ? 0U : 1U};
 }
 
@@ -85,7 +85,9 @@ void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
   Scattering& scattering = scattered_[i];
   scattering.in_rgb = sees_rgb(path);
   const SampledSpectrum light = light_spectra(path, scattering.in_rgb)[only_light_->radiance];
-  scattering.radiance = light_throughput(path, scattering.in_rgb) * light * only_light_->scale;
+  const float brought = share_of_light(path, only_light_->towards, only_light_->distance);
+  scattering.radiance =
+      light_throughput(path, scattering.in_rgb) * light * (only_light_->scale * brought);
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, only_light_->distance);
 }
@@ -108,11 +110,12 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
     }
   }
   scattering.end = shadow_end(draw);
-  scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance;
+  const float brought = share_of_light(path, draw.direction, draw.distance);
+  scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance * brought;
   const bool has_line =
       setup_.near_lights != nullptr && draw.within &&
       setup_.near_lights->has_line(*draw.within, path.medium, vector_at(scatterings_.position, i));
-  scatterings_.light_pdf[i] = has_line ? 0 : draw.pdf;
+  scatterings_.light_pdf[i] = has_line || brought == 0 ? 0 : draw.pdf;
   scatterings_.light_found[i] = draw.delta ? 0.0F : 1.0F;
   scatterings_.brightness[i] =
       brightness(path, scattering.radiance, scattering.in_rgb, draw.distance);
@@ -179,7 +182,8 @@ void PathWavefront::turn_scattered(std::size_t i, ScenePath& path) {
   path.ends_at_surface = false;
   path.surfaces_known = false;
   path.emission_share = 1;
-  path.turned_in = ++path.flights;
+  ++path.flights;
+  if (has_alpha_) path.turned_in = path.flights;
   path.is_sent = path.is_in_rays = true;
   going_on_[going_on_count_++] = static_cast<uint32_t>(i);
 }
@@ -224,29 +228,42 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   const bool is_viewed = meter_ != nullptr && !meter_->views.empty();
   kernels_.draw_numbers(scatterings_, setup_.seed,
                         chooses_light ? kScatteringBlocks : kBlocksWithoutLight);
+  const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
+  const ShadowRoulette& shadows =
+      setup_.shadow_guide != nullptr ? setup_.shadow_guide->roulette(medium) : kAllShadowRays;
+  // Branches are faint: their light is looked for before roulette, or most of it would be lost.
+  const bool splits = shadows.lobe_scale > 0;
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
-    path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
+    path.is_dead = !path.is_branch && !survives(path, scatterings_.numbers[kRouletteNumber][i]);
     if (path.is_dead || !draws_lights) continue;
+    if (splits) {
+      const float throughput = path.mean(path.throughput) * path.sun_share;
+      scatterings_.lobe_scale[i] =
+          path.is_branch ? std::max(throughput, setup_.roulette_threshold) : throughput;
+    }
     chooses_light ? draw_light_of(i, path) : take_only_light(i, path);
     if (scatterings_.is_given[i] != 0) {
       scatterings_.light_value[i] = scattered_[i].phase->evaluate(
           vector_at(scatterings_.direction, i), vector_at(scatterings_.to_light, i));
     }
   }
-  const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
-  const ShadowGuide* const shadows = setup_.shadow_guide;
-  kernels_.scatter(scatterings_, shadows != nullptr ? shadows->roulette(medium) : kAllShadowRays);
+  kernels_.scatter(scatterings_, shadows);
   const EmissionGuide* const guide = guide_of(medium);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
     if (path.is_dead) continue;
     if (is_viewed) show_collision(i);
     if (draws_lights) cast_shadow(i);
-    if (guide != nullptr) draw_emission(i, *guide);
+    if (guide != nullptr && !path.is_branch) draw_emission(i, *guide);
+    if (path.is_branch) {
+      path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
+      if (path.is_dead) continue;
+    }
     if (scatterings_.is_given[i] != 0) draw_direction_of(i);
+    if (splits) split(i, path, shadows.dominant);
     turn_scattered(i, path);
-    if (near_lines_) draw_near_line(i);
+    if (near_lines_ && !path.is_branch) draw_near_line(i);
     if (guide != nullptr) {
       const float found =
           guide->pdf(vector_at(scatterings_.position, i), vector_at(scatterings_.next, i));

@@ -32,7 +32,7 @@ void PathWavefront::send(std::size_t slot) {
   const Walker& walker = path.colors->walker(path.medium, path.channel);
   const float end = path.ends_at_surface ? hit_of(path).t : path.side;
   write_ray(slot, walker, path.origin, path.direction, end);
-  if (near_lines_) send_near_line(slot, end);
+  if (near_lines_ && !path.is_branch) send_near_line(slot, end);
 }
 
 void PathWavefront::write_ray(std::size_t slot, const Walker& walker, const Vec3f& origin,
@@ -122,7 +122,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
   if (batch.rays.weighted()) {
     const int channels = batch.walker->channels();
     for (int c = 0; c < channels; ++c) {
-      path.radiance[c] += flights_.emitted[c][i] * path.emission_share;
+      if (!path.is_branch) path.radiance[c] += flights_.emitted[c][i] * path.emission_share;
       path.throughput[c] = flights_.weight[c][i];
       path.density[c] = flights_.density[c][i];
     }
@@ -130,7 +130,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
     path.throughput[0] *= flights_.weight[0][i];
   } else {
     // A walker of one channel serves all, or the only one that there is.
-    if (const float emitted = flights_.emitted[0][i]; emitted != 0) {
+    if (const float emitted = flights_.emitted[0][i]; emitted != 0 && !path.is_branch) {
       path.radiance += path.throughput * (emitted * path.emission_share);
     }
     path.throughput *= flights_.weight[0][i];
@@ -159,6 +159,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
 }
 
 void PathWavefront::escape(ScenePath& path) {
+  constexpr float kFromOutside = std::numeric_limits<float>::infinity();
   path.is_dead = true;
   if (path.scatterings == 0) {
     result_of(path).alpha = 1 - path.mean(path.throughput);
@@ -170,7 +171,8 @@ void PathWavefront::escape(ScenePath& path) {
   // What next-event estimation could have found too is shared with it.
   const bool is_shared = path.pdf > 0 && path.glass == nullptr;
   const float share = is_shared ? path.pdf / (path.pdf + light.pdf) : 1.0F;
-  const SampledSpectrum seen = light_throughput(path, in_rgb) * light.radiance * share;
+  const float brought = share_of_light(path, path.direction, kFromOutside);
+  const SampledSpectrum seen = light_throughput(path, in_rgb) * light.radiance * (share * brought);
   if (jobs_.layers.on() && path.scatterings == 0) {
     jobs_.layers.background(path.result, rgb_of(path, in_rgb ? SampledSpectrum() : seen,
                                                 in_rgb ? seen : SampledSpectrum()));

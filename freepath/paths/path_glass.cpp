@@ -14,7 +14,7 @@ void PathWavefront::draw_light_through(std::size_t i, const ScenePath& path,
   Scattering& scattering = scattered_[i];
   scattering.radiance = SampledSpectrum();
   const bool plays = GlassSpheres::plays(path.scatterings, setup_.max_scatterings);
-  if (!plays || !draw.area || draw.delta || !(draw.pdf > 0)) return;
+  if (path.is_branch || !plays || !draw.area || draw.delta || !(draw.pdf > 0)) return;
   const Vec3f position{scatterings_.position[0][i], scatterings_.position[1][i],
                        scatterings_.position[2][i]};
   const Vec3f lamp = position + draw.direction * draw.distance;
@@ -40,8 +40,7 @@ void PathWavefront::draw_light_through(std::size_t i, const ScenePath& path,
                                          light_spectra(path, scattering.in_rgb));
   seen = with_alpha(seen, origin);
   const auto eta = static_cast<float>(glass.sphere.eta());
-  scattering.radiance =
-      light_throughput(path, scattering.in_rgb) * seen.radiance * (eta * eta);
+  scattering.radiance = light_throughput(path, scattering.in_rgb) * seen.radiance * (eta * eta);
   scattering.end = {(left.position - position).length(),
                     ShadowEnd::Target{glass.shape, glass.primitive}};
   scattering.bend = {origin, seen.direction, shadow_end(seen), glass.shape};
@@ -62,8 +61,8 @@ LightSeen PathWavefront::see_light(const ScenePath& path, uint32_t light, const 
   const auto through = GlassSpheres::at(*path.glass, path.turned_at, hit.point.position,
                                         hit.point.normal, path.direction);
   if (through) {
-    seen.pdf = scene_.lights->hit(path.turned_at, light, hit.point, spectra).pdf *
-               through->density_ratio;
+    seen.pdf =
+        scene_.lights->hit(path.turned_at, light, hit.point, spectra).pdf * through->density_ratio;
   }
   return seen;
 }

@@ -179,7 +179,7 @@ void PathWavefront::meet_surface(std::size_t slot) {
   }
   const SurfaceHit& hit = *met;
   const PathShape& shape = scene_.shapes[hit.point.shape];
-  if (shape.light) {
+  if (shape.light && !path.is_branch) {
     const bool in_rgb = sees_rgb(path);
     const SpectrumValues& spectra = light_spectra(path, in_rgb);
     const LightSeen light = see_light(path, *shape.light, hit, spectra);
@@ -241,11 +241,13 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
     // Braces keep the order of draws.
     const std::array<float, 3> u{random.uniform(), random.uniform(), random.uniform()};
     const LightSample light = draw_light(position, path.colors->spectra, u);
-    if (light.pdf > 0) {
+    const float brought = share_of_light(path, light.direction, light.distance);
+    if (light.pdf > 0 && brought > 0) {
       const MaterialValue f =
           material.evaluate(hit.point, path.direction, light.direction, random, context);
       const float share = light.delta ? 1.0F : light.pdf / (light.pdf + f.pdf);
-      SampledSpectrum radiance = path.throughput * light.radiance * f.value * (share / light.pdf);
+      SampledSpectrum radiance =
+          path.throughput * light.radiance * f.value * (brought * share / light.pdf);
       const float survival = shadow_survival(path, position, light, radiance);
       if (survival < 1) radiance *= random.uniform() < survival ? 1 / survival : 0.0F;
       if (!is_black(radiance)) {

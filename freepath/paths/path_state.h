@@ -25,18 +25,21 @@ struct alignas(64) ScenePath {
   uint32_t pixel = 0;
   uint32_t sample_key = 0;  ///< Key of its random numbers.
   uint32_t flights = 0;     ///< Rays so far.
-  uint32_t turned_in = 0;   ///< The flight with which its direction began.
   uint32_t scatterings = 0;
   /// Density with which its direction was drawn [1/sr]; 0: it had no choice, or comes from the
   /// camera.
   float pdf = 0;
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
   float emission_share = 1;
-  uint8_t hero = 0;  ///< The channel that decides where channels part.
+  /// What of the light in the cone around a sun the path brings, the rest being its branches'; of a
+  /// branch, which brings no other light, 1. See LobeBranch.
+  float sun_share = 1;
+  uint8_t hero : 4 = 0;  ///< The channel that decides where channels part.
+  bool only_hero : 1 = false;
+  bool is_coloured : 1 = false;  ///< It has met something that may tell wavelengths apart.
+  bool is_branch : 1 = false;
   bool surfaces_known = false;
   bool ends_at_surface = false;  ///< Once that is known.
-  bool only_hero = false;
-  bool is_coloured = false;  ///< It has met something that may tell wavelengths apart.
   bool is_dead = false;
   bool is_sent = false;     ///< Its next ray lies in a stream, or waits in vacuum.
   bool is_in_rays = false;  ///< Its ray lies in a stream alone: `origin` and so on are of old.
@@ -47,6 +50,8 @@ struct alignas(64) ScenePath {
   /// lights, whose integral over all wavelengths is known.
   SampledSpectrum rgb;
   SampledSpectrum density{1.0F};  ///< FlightStream::density of the flights so far.
+
+  uint32_t turned_in = 0;  ///< The flight with which its direction began, if that is asked for.
 
   Vec3f origin{0};     ///< Origin of its ray [world, relative to the scene's origin].
   Vec3f direction{0};  ///< Direction of its ray, unit [world].

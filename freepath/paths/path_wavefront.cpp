@@ -36,6 +36,9 @@ PathWavefront::PathWavefront(const PathSetup& setup)
     near_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots, /*is_second=*/true);
   }
   if (scene_.surfaces) hits_.resize(setup.slots);
+  if (setup.shadow_guide != nullptr && setup.shadow_guide->has_lobes()) {
+    branches_.resize(setup.slots);
+  }
   if (!scene_.surfaces && scene_.media.size() == 1 && !scene_.domain && meter_ == nullptr) {
     const Box3d box = scene_.media[0].outer_bounds();
     everything_ = Box3f(Vec3f(box.min - scene_.origin), Vec3f(box.max - scene_.origin));
@@ -64,6 +67,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   std::iota(slots_.begin(), slots_.end(), uint32_t{0});  // in order, as memory likes to be read
   sent_.clear();
   sent_in_vacuum_.clear();
+  for (std::vector<LobeBranch>& waiting : branches_) waiting.clear();
   has_more_jobs_ = true;
   while (true) {
     while (active_ < setup_.slots && fill(slots_[active_], jobs, film)) ++active_;
@@ -163,7 +167,7 @@ void PathWavefront::end_paths(const PathJobSource& jobs, Film& film) {
     if (scene_.surfaces) __builtin_prefetch(&ahead->origin);  // most are sent from here
     const uint32_t slot = slots_[i];
     ScenePath& path = paths_[slot];
-    if (!path.is_dead || take_branch(path)) {
+    if (!path.is_dead || take_branch(path) || take_lobe_branch(path)) {
       if (!path.is_sent) send(slot);
       ++i;
       continue;

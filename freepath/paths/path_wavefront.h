@@ -13,6 +13,7 @@
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
 #include "freepath/paths/glass_spheres.h"
+#include "freepath/paths/lobe_branch.h"
 #include "freepath/paths/near_light_lines.h"
 #include "freepath/paths/near_lights.h"
 #include "freepath/paths/open_jobs.h"
@@ -45,7 +46,7 @@ struct PathSetup {
   /// Whether scatterings in emissive media also look for their light along lines of its own; where
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
-  /// Which shadow rays are cast; null: all.
+  /// Which shadow rays are cast, and where paths split; null: all, and nowhere.
   const ShadowGuide* shadow_guide = nullptr;
   /// Lights in or near media whose light lines bring; null: scatterings alone do.
   const NearLights* near_lights = nullptr;
@@ -207,6 +208,22 @@ class PathWavefront {
   bool refract(ScenePath& path, const SurfaceHit& hit, const MaterialSample& next, float pdf) const;
   /// What the alpha of a light leaves of a draw of it.
   LightSample with_alpha(LightSample light, const Vec3f& position) const;
+  /// Follows a scattering in the queue in two directions, if its chance comes. The path has that
+  /// drawn for it, and its share.
+  /// @param dominant direction from which most light comes
+  void split(std::size_t scattering, ScenePath& path, const Vec3f& dominant);
+  /// What of a light a path brings, the rest being its branches'.
+  /// @param distance to it
+  float share_of_light(const ScenePath& path, const Vec3f& direction, float distance) const {
+    if (path.sun_share == 1 && !path.is_branch) return 1;
+    const bool is_sun = !std::isfinite(distance) && setup_.shadow_guide->is_dominant(direction);
+    return is_sun ? path.sun_share : path.is_branch ? 0.0F : 1.0F;
+  }
+  std::vector<LobeBranch>& branches_of(const ScenePath& path) {
+    return branches_[&path - paths_.data()];
+  }
+  /// Goes on with a branch of a path that has ended, if one waits.
+  bool take_lobe_branch(ScenePath& path);
   /// Draws a point for a light that the next ray of a path passes near, if it does.
   /// @param length of the ray, may be infinite
   void send_near_line(std::size_t slot, float length);
@@ -339,6 +356,7 @@ class PathWavefront {
   // Where there are lights near media; else null.
   std::optional<NearLightLines> near_lines_;
   std::optional<ShadowTracer> near_shadows_;
+  std::vector<std::vector<LobeBranch>> branches_;  // of the paths, if they split
   OpenJobs jobs_;
   uint32_t newest_ = 0;        // job, whose paths start now
   std::size_t next_path_ = 0;  // of those

@@ -124,7 +124,10 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   }
   std::optional<WavelengthSampler> made;  // by the threads that are asked for
   Threads(settings.threads).execute([&] {
-    made.emplace(scene, mode, settings.wavelengths, settings.walk, settings.chooses_transmittance);
+    // Spectral films look at wavelengths that R, G and B hardly see.
+    made.emplace(
+        scene, mode, settings.wavelengths, settings.walk, settings.chooses_transmittance,
+        settings.buckets.count > 0 ? WavelengthDensity::kVisible : WavelengthDensity::kFilm);
   });
   const WavelengthSampler& factory = *made;
   if (!settings.studies_unbounded_weights) {
@@ -133,10 +136,14 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
       require_bounded_weights(shadow_weight_growth(settings.walk), settings.max_scatterings);
     }
   }
-  std::optional<ShadowGuide> shadow_guide;
-  if (settings.shadow_roulette) shadow_guide.emplace(factory, settings.walk.seed);
   std::optional<NearLights> near_lights;
   if (settings.near_light_lines) near_lights.emplace(factory, settings.walk.seed);
+  std::optional<ShadowGuide> shadow_guide;
+  if (settings.shadow_roulette || settings.lobe_splitting) {
+    const ShadowGuide::Wanted wanted{.roulette = settings.shadow_roulette,
+                                     .lobes = settings.lobe_splitting};
+    shadow_guide.emplace(factory, wanted, settings.walk.seed);
+  }
   std::optional<GlassSpheres> glass_spheres;
   if (settings.light_through_glass) glass_spheres.emplace(scene);
   PathSetup setup;

@@ -52,6 +52,9 @@ struct RenderSettings {
   /// Finds the light of lights in or near media along lines, whose variance has an end
   /// (NearLights); else at scatterings alone.
   bool near_light_lines = true;
+  /// Splits paths towards a light that outshines others, like the sun, where phase functions have
+  /// lobes (LobeBranch).
+  bool lobe_splitting = true;
   /// Draws lamps for scatterings in spheres of glass (GlassSpheres); else paths find their light by
   /// chance.
   bool light_through_glass = true;

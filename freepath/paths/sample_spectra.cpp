@@ -65,12 +65,14 @@ double shift_of(uint64_t seed) {
 }  // namespace
 
 WavelengthSampler::WavelengthSampler(const PathScene& scene, ColorMode mode, int wavelengths,
-                                     const WalkSettings& walk, bool chooses_transmittance)
+                                     const WalkSettings& walk, bool chooses_transmittance,
+                                     WavelengthDensity density)
     : scene_(scene),
       mode_(mode),
       wavelengths_(wavelengths),
       walk_(walk),
       chooses_transmittance_(chooses_transmittance),
+      density_(density),
       combinations_(scene.media.size()) {
   if (wavelengths < 1 || wavelengths > kMaxChannels) {
     fail("a path carries 1 to {} wavelengths, not {}; CMake's FREEPATH_MAX_CHANNELS sets how many",
@@ -167,8 +169,8 @@ SpectrumValues WavelengthSampler::spectra_of_set(uint32_t set) const {
       static_cast<double>(set % sets_per_block_) + van_der_corput(set / sets_per_block_);
   double u = shift_of(walk_.seed) + node / (static_cast<double>(sets_per_block_) * wavelengths_);
   u -= std::floor(u);
-  return scene_.spectra->at(sample_wavelengths<kMaxChannels>(
-      u, WavelengthDensity::kVisible, static_cast<std::size_t>(wavelengths_)));
+  return scene_.spectra->at(
+      sample_wavelengths<kMaxChannels>(u, density_, static_cast<std::size_t>(wavelengths_)));
 }
 
 std::shared_ptr<const MediumWalkers> WavelengthSampler::make_walkers(

@@ -13,6 +13,7 @@
 #include "freepath/paths/path_scene.h"
 #include "freepath/sensors/sample_share.h"
 #include "freepath/spectra/spectrum_table.h"
+#include "freepath/spectra/wavelengths.h"
 #include "freepath/transport/walker.h"
 #include "freepath/transport/weight_growth.h"
 
@@ -86,8 +87,10 @@ class WavelengthSampler {
   /// @param wavelengths of a path in spectral mode, 1 to kMaxChannels
   /// @param chooses_transmittance whether homogeneous media have the estimator that is exact there
   ///   in place of that of `walk`
+  /// @param density of each wavelength
   WavelengthSampler(const PathScene& scene, ColorMode mode, int wavelengths,
-                    const WalkSettings& walk, bool chooses_transmittance = false);
+                    const WalkSettings& walk, bool chooses_transmittance = false,
+                    WavelengthDensity density = WavelengthDensity::kFilm);
 
   /// Number of the set of wavelengths that a sample has; in R, G, B its own.
   /// @param pixel of the whole picture
@@ -151,6 +154,7 @@ class WavelengthSampler {
   int wavelengths_;
   WalkSettings walk_;
   bool chooses_transmittance_;
+  WavelengthDensity density_;
   int paths_per_sample_ = 1;
   bool depends_on_wavelengths_ = false;
   uint32_t sets_per_block_ = 1;

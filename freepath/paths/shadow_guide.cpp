@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "freepath/base/random.h"
+#include "freepath/paths/slab_splitting.h"
 #include "freepath/paths/walk_batches.h"
 #include "freepath/transport/walker.h"
 
@@ -24,6 +25,11 @@ constexpr std::array<double, 2> kLattice{0.8191725133961645, 0.6710436067037893}
 /// A direction is dominant if so much of the light comes from there.
 constexpr float kDominantShare = 0.25F;
 
+/// Splitting pays where two scatterings, forwards, are so many times as likely to turn light
+/// into a direction as if they were isotropic.
+constexpr double kLeastPeak = 1.5;
+constexpr int kMoments = 64;
+
 /// Cells along the longest side of a medium, and shadow rays of each.
 constexpr int kCells = 24;
 constexpr uint32_t kRaysOfCell = 4;
@@ -35,18 +41,36 @@ constexpr std::size_t kMostMedia = 4;
 
 }  // namespace
 
-ShadowGuide::ShadowGuide(const WavelengthSampler& factory, uint64_t seed) {
+ShadowGuide::ShadowGuide(const WavelengthSampler& factory, const Wanted& wanted, uint64_t seed) {
   const PathScene& scene = factory.scene();
   if (!scene.lights->is_drawn()) return;
   const double scattered = scene.lights->fluence() / (4 * std::numbers::pi);
-  elsewhere_.least = kThreshold * static_cast<float>(scattered);
+  if (!(scattered > 0)) return;
+  if (wanted.roulette) elsewhere_.least = kThreshold * static_cast<float>(scattered);
   const std::vector<SceneMedium>& media = scene.media;
-  if (!(elsewhere_.least > 0) || media.empty() || media.size() > kMostMedia || scene.domain) return;
+  if (media.empty() || media.size() > kMostMedia || scene.domain) return;
   find_dominant(scene);
   if (!dominant_) return;
   for (std::size_t i = 0; i < media.size(); ++i) {
     media_.push_back(tabulate(scene, factory.bound_in_rgb(i), media[i].bounds(), seed));
+    if (!wanted.lobes || media_.back().roots == nullptr) continue;
+    media_.back().lobe_scale = lobe_scale(media[i]);
+    has_lobes_ = has_lobes_ || media_.back().lobe_scale > 0;
   }
+}
+
+float ShadowGuide::lobe_scale(const SceneMedium& medium) const {
+  const std::size_t components = std::max<std::size_t>(medium.components().size(), 1);
+  double peak = 0;
+  for (std::size_t k = 0; k < components; ++k) {
+    const std::vector<double> moments = legendre_moments(medium.phase(k), kMoments);
+    double of_two = 0;
+    for (std::size_t l = 0; l < moments.size(); ++l) {
+      of_two += static_cast<double>(2 * l + 1) * moments[l] * moments[l];
+    }
+    peak = std::max(peak, of_two);
+  }
+  return peak < kLeastPeak ? 0 : dominant_share_ * 4 * std::numbers::pi_v<float>;
 }
 
 void ShadowGuide::find_dominant(const PathScene& scene) {
@@ -84,6 +108,8 @@ void ShadowGuide::find_dominant(const PathScene& scene) {
     dominant_ = candidate.direction;
   }
   if (largest < kDominantShare * sum) dominant_.reset();
+  const double fluence = scene.lights->fluence();
+  dominant_share_ = static_cast<float>(std::min(1.0, largest / (3.0 * kDraws * fluence)));
 }
 
 ShadowRoulette ShadowGuide::tabulate(const PathScene& scene, const BoundMedium& bound,

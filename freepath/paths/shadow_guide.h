@@ -23,8 +23,13 @@ namespace freepath {
 /// is the whole picture where media are thin, and there rays are few. Immutable; threads share it.
 class ShadowGuide {
  public:
+  /// What it is asked for.
+  struct Wanted {
+    bool roulette = true;  ///< Of shadow rays; else all are cast.
+    bool lobes = true;     ///< Paths that split, where that pays.
+  };
   /// @param seed of the estimates of transmittance
-  ShadowGuide(const WavelengthSampler& factory, uint64_t seed);
+  ShadowGuide(const WavelengthSampler& factory, const Wanted& wanted, uint64_t seed);
   ShadowGuide(const ShadowGuide&) = delete;  // its media point at its tables
   ShadowGuide& operator=(const ShadowGuide&) = delete;
 
@@ -33,6 +38,12 @@ class ShadowGuide {
   /// @param distance to the light
   static bool plays(uint32_t scatterings, float distance) {
     return scatterings >= kFirstScattering && !std::isfinite(distance);
+  }
+  /// Whether paths split in a medium.
+  bool has_lobes() const { return has_lobes_; }
+  /// Whether a direction is in the cone around that from which most light comes.
+  bool is_dominant(const Vec3f& direction) const {
+    return dominant_ && direction.dot(*dominant_) >= ShadowRoulette::kSameDirection;
   }
   /// How rays from scatterings in a medium play.
   const ShadowRoulette& roulette(MediumId medium) const {
@@ -44,6 +55,7 @@ class ShadowGuide {
   static constexpr uint32_t kFirstScattering = 2;
 
   void find_dominant(const PathScene& scene);
+  float lobe_scale(const SceneMedium& medium) const;
   ShadowRoulette tabulate(const PathScene& scene, const BoundMedium& bound, const Box3d& bounds,
                           uint64_t seed);
 
@@ -51,6 +63,8 @@ class ShadowGuide {
   /// outside bring by an isotropic scattering, times a constant.
   ShadowRoulette elsewhere_;
   std::optional<Vec3f> dominant_;
+  float dominant_share_ = 0;  // of the light from outside
+  bool has_lobes_ = false;
   std::vector<ShadowRoulette> media_;      // if there is a dominant direction
   std::vector<std::vector<float>> roots_;  // of those media, which point at them
 };

@@ -1,6 +1,9 @@
 #include "freepath/spectra/wavelengths.h"
 
 #include <algorithm>
+#include <array>
+
+#include "freepath/base/rgb_primaries.h"
 
 namespace freepath {
 namespace {
@@ -24,11 +27,46 @@ double visible_total() {
   return kValue;
 }
 
+/// kFilm, constant between the wavelengths that the observer is tabulated at.
+struct FilmDensity {
+  static constexpr std::size_t kParts = kObserverNodes - 1;
+  std::array<double, kParts> pdf{};            // [1/nm]
+  std::array<double, kParts + 1> integrals{};  // up to the beginning of each part, and to the end
+
+  FilmDensity() {
+    const RgbChromaticities srgb;
+    const Matrix3d to_rgb = rgb_to_xyz_matrix(srgb.primaries, srgb.white).inverse(true);
+    for (std::size_t i = 0; i < kParts; ++i) {
+      const Vec3d middle = color_matching(observer_node(i) + 0.5) * to_rgb;
+      integrals[i + 1] = integrals[i] + middle.length();
+    }
+    const double total = integrals.back();
+    for (double& integral : integrals) integral /= total;
+    for (std::size_t i = 0; i < kParts; ++i) pdf[i] = integrals[i + 1] - integrals[i];
+  }
+  std::size_t part_of(double wavelength) const {
+    return std::min(static_cast<std::size_t>(wavelength - kShortestWavelength), kParts - 1);
+  }
+  double sample(double u) const {
+    const auto above = std::upper_bound(integrals.begin() + 1, integrals.end() - 1, u);
+    const auto part = static_cast<std::size_t>(above - integrals.begin()) - 1;
+    return observer_node(part) + std::clamp((u - integrals[part]) / pdf[part], 0.0, 1.0);
+  }
+};
+
+const FilmDensity& film_density() {
+  static const FilmDensity kDensity;
+  return kDensity;
+}
+
 }  // namespace
 
 double wavelength_pdf(double wavelength, WavelengthDensity density) {
   if (!(wavelength >= kShortestWavelength && wavelength <= kLongestWavelength)) return 0;
   if (density == WavelengthDensity::kUniform) return 1 / (kLongestWavelength - kShortestWavelength);
+  if (density == WavelengthDensity::kFilm) {
+    return film_density().pdf[film_density().part_of(wavelength)];
+  }
   const double sech = 1 / std::cosh(kSteepness * (wavelength - kCentre));
   return kSteepness * sech * sech / visible_total();
 }
@@ -37,6 +75,8 @@ double sample_wavelength(double u, WavelengthDensity density) {
   double wavelength = 0;
   if (density == WavelengthDensity::kUniform) {
     wavelength = kShortestWavelength + u * (kLongestWavelength - kShortestWavelength);
+  } else if (density == WavelengthDensity::kFilm) {
+    wavelength = film_density().sample(u);
   } else {
     const double integral = visible_first() + u * visible_total();
     wavelength = kCentre + std::atanh(integral) / kSteepness;

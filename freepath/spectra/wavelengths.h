@@ -14,6 +14,10 @@ namespace freepath {
 enum class WavelengthDensity {
   kUniform,
   kVisible,  ///< Density in proportion to sech²(0.0072 (λ - 538 nm)) [Radziszewski09].
+  /// Density in proportion to the length of what a wavelength adds to R, G and B of sRGB, so that
+  /// all add as much: the one of least variance, in R, G and B together, of equal radiances. Next
+  /// to none at the ends, where films see nothing.
+  kFilm,
 };
 
 /// Probability per nanometre of drawing a wavelength [1/nm]; its integral over the rendered

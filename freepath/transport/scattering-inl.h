@@ -83,30 +83,55 @@ HWY_INLINE VecF cell_along(VecF position, float corner, float per_cell, int coun
   return hn::Floor(hn::Min(hn::Max(at, hn::Zero(kFloat)), last));
 }
 
+/// What ShadowRoulette knows of scatterings and the directions to their lights.
+struct DominantLanes {
+  VecF root;   ///< Of the cells' transmittances.
+  MaskF same;  ///< Whether the light is the dominant one.
+};
+
+HWY_INLINE DominantLanes dominant_lanes(const ShadowRoulette& roulette, const VectorLanes& position,
+                                        const VectorLanes& to_light) {
+  if (roulette.roots == nullptr) {
+    const VecF one = set(1.0F);
+    return {one, hn::Lt(one, one)};
+  }
+  const VecF cosine = hn::Add(hn::Add(hn::Mul(to_light.x, set(roulette.dominant.x)),
+                                      hn::Mul(to_light.y, set(roulette.dominant.y))),
+                              hn::Mul(to_light.z, set(roulette.dominant.z)));
+  const Vec3i& counts = roulette.counts;
+  const auto along = [&](VecF at, int axis) {
+    return small_to_int(
+        cell_along(at, roulette.corner[axis], roulette.per_cell[axis], counts[axis]));
+  };
+  VecI cell = along(position.z, 2);
+  cell = hn::Add(hn::Mul(cell, hn::Set(kInt, counts.y)), along(position.y, 1));
+  cell = hn::Add(hn::Mul(cell, hn::Set(kInt, counts.x)), along(position.x, 0));
+  return {hn::GatherIndex(kFloat, roulette.roots, cell),
+          hn::Ge(cosine, set(ShadowRoulette::kSameDirection))};
+}
+
+/// With what probability paths split into the lobe around the dominant light.
+HWY_INLINE VecF lobe_chances(const ShadowRoulette& roulette, VecF g, const VectorLanes& before,
+                             VecF throughput, VecF root) {
+  if (roulette.lobe_scale == 0) return hn::Zero(kFloat);
+  // Two scatterings have the square of the mean cosine of one; of Henyey's and Greenstein's
+  // function it is the function of that.
+  const VectorLanes dominant{set(roulette.dominant.x), set(roulette.dominant.y),
+                             set(roulette.dominant.z)};
+  const VecF turned = HenyeyGreensteinLanes(hn::Mul(g, g)).evaluate(before, dominant);
+  const VecF expected =
+      hn::Mul(hn::Mul(hn::Mul(throughput, set(roulette.lobe_scale)), turned), root);
+  const MaskF enough = hn::Ge(expected, set(ShadowRoulette::kLeastLobeChance));
+  return hn::IfThenElseZero(enough, hn::Min(expected, set(1.0F)));
+}
+
 /// ShadowRoulette::survival(), lane by lane.
-HWY_INLINE VecF survival_lanes(const ShadowRoulette& roulette, const VectorLanes& position,
-                               const VectorLanes& direction, VecF brightness) {
+HWY_INLINE VecF survival_lanes(const ShadowRoulette& roulette, const DominantLanes& dominant,
+                               VecF brightness) {
   const VecF one = set(1.0F);
   const MaskF faint = hn::Lt(brightness, set(roulette.least));
   if (hn::AllFalse(kFloat, faint)) return one;
-  VecF expected = brightness;
-  if (roulette.roots != nullptr) {
-    const VecF cosine = hn::Add(hn::Add(hn::Mul(direction.x, set(roulette.dominant.x)),
-                                        hn::Mul(direction.y, set(roulette.dominant.y))),
-                                hn::Mul(direction.z, set(roulette.dominant.z)));
-    const MaskF same = hn::And(faint, hn::Ge(cosine, set(ShadowRoulette::kSameDirection)));
-    const Vec3i& counts = roulette.counts;
-    const auto along = [&](VecF at, int axis) {
-      return small_to_int(
-          cell_along(at, roulette.corner[axis], roulette.per_cell[axis], counts[axis]));
-    };
-    VecI cell = along(position.z, 2);
-    cell = hn::Add(hn::Mul(cell, hn::Set(kInt, counts.y)), along(position.y, 1));
-    cell = hn::Add(hn::Mul(cell, hn::Set(kInt, counts.x)), along(position.x, 0));
-    const VecF root =
-        hn::GatherIndex(kFloat, roulette.roots, hn::IfThenElseZero(int_mask(same), cell));
-    expected = hn::Mul(expected, hn::IfThenElse(same, root, one));
-  }
+  const VecF expected = hn::Mul(brightness, hn::IfThenElse(dominant.same, dominant.root, one));
   const VecF wanted = hn::Div(expected, set(roulette.least));
   const VecF held = hn::Min(hn::Max(wanted, set(ShadowRoulette::kLeastSurvival)), one);
   return hn::IfThenElse(faint, held, one);
@@ -114,9 +139,12 @@ HWY_INLINE VecF survival_lanes(const ShadowRoulette& roulette, const VectorLanes
 
 inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& roulette) {
   for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
-    const HenyeyGreensteinLanes phase(hn::Load(kFloat, &scatterings.g[i]));
+    const VecF g = hn::Load(kFloat, &scatterings.g[i]);
+    const HenyeyGreensteinLanes phase(g);
     const VectorLanes before = vectors_at(scatterings.direction, i);
     const VectorLanes to_light = vectors_at(scatterings.to_light, i);
+    const DominantLanes dominant =
+        dominant_lanes(roulette, vectors_at(scatterings.position, i), to_light);
     const MaskU given = hn::Ne(hn::Load(kUint, &scatterings.is_given[i]), hn::Zero(kUint));
     const VecF value =
         hn::IfThenElse(hn::RebindMask(kFloat, given), hn::Load(kFloat, &scatterings.light_value[i]),
@@ -130,8 +158,11 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
     const VecF share = hn::IfThenElseZero(drawn, hn::Div(value, density));
     hn::Store(share, kFloat, &scatterings.light_share[i]);
     const VecF brightness = hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share);
-    hn::Store(survival_lanes(roulette, vectors_at(scatterings.position, i), to_light, brightness),
-              kFloat, &scatterings.shadow_survival[i]);
+    hn::Store(survival_lanes(roulette, dominant, brightness), kFloat,
+              &scatterings.shadow_survival[i]);
+    hn::Store(lobe_chances(roulette, g, before, hn::Load(kFloat, &scatterings.lobe_scale[i]),
+                           dominant.root),
+              kFloat, &scatterings.lobe_chance[i]);
     VecF pdf;
     const VectorLanes after =
         phase.sample(before, hn::Load(kFloat, &scatterings.numbers[kPhaseNumber][i]),

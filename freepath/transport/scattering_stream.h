@@ -50,6 +50,8 @@ struct ScatteringStream {
   Row<float> shadow_survival{};  ///< With what probability to cast a shadow ray, (0, 1].
   std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
   Row<float> next_pdf{};             ///< Density of that direction [1/sr].
+  Row<float> lobe_scale{};           ///< The path's throughput, after its roulette.
+  Row<float> lobe_chance{};          ///< With what probability it splits: LobeBranch.
 };
 
 }  // namespace freepath

@@ -7,8 +7,9 @@
 
 namespace freepath {
 
-/// Coarse transmittances of a medium towards the direction from which most of the light comes, and
-/// what a shadow ray has to bring for it to be cast in any case (ShadowGuide makes them).
+/// Coarse transmittances of a medium towards the direction from which most of the light comes, what
+/// a shadow ray has to bring for it to be cast in any case, and how often paths split towards
+/// that direction (ShadowGuide makes them).
 struct ShadowRoulette {
   /// Rays are cast with this probability at least, so that none counts for much more than others.
   static constexpr float kLeastSurvival = 0.1F;
@@ -23,6 +24,12 @@ struct ShadowRoulette {
   Vec3f per_cell{0};             ///< Cells in a unit of length [1/world].
   Vec3i counts{0};               ///< Number of cells along each axis.
   const float* roots = nullptr;  ///< Transmittances of cells, x fastest; null: none is known.
+  /// Factor of the chance with which a path splits (LobeBranch), which is this times the path's
+  /// throughput, the density with which two scatterings would turn it into the dominant direction,
+  /// and the cell's value, up to 1; 0: none does.
+  float lobe_scale = 0;
+  /// Chances below are none.
+  static constexpr float kLeastLobeChance = 0.01F;
 
   /// The probability with which to cast a ray, (0, 1]; if it is cast, what it brings is to be
   /// divided by that. The lanes compute the same in the same order (transport/scattering-inl.h).

@@ -1,6 +1,6 @@
-// The power of furnaces: 2 % planted in the roulette of paths, in the shares of light sampling or
-// in those of the emission guide must show, with as many samples as make the shift 7 standard
-// errors.
+// The power of furnaces: 2 % planted in the roulette of paths, in the shares of light sampling,
+// in those of the emission guide, in lines or in branches must show, with as many samples as make
+// the shift 7 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 #include "tests/certify/planted.h"
 #include "tests/scene/image_file.h"
 #include "tests/scene/rendered_scenes.h"
+#include "tests/scene/scattered_twice.h"
 #include "tests/scene/volume_pictures.h"
 #include "tests/transport/media_for_tests.h"
 
@@ -149,6 +150,15 @@ FilmMean glass_furnace(uint32_t samples, uint64_t seed) {
       samples, seed);
 }
 
+/// A layer under a sun, over what quadrature says.
+FilmMean lit_layer(uint32_t samples, uint64_t seed) {
+  static const LitLayer kLayer{0, 2, 0.8, Vec3d(0.8, 0, 0.6)};
+  static const double kExpected = kLayer.once() + kLayer.twice();
+  const FilmMean found =
+      mean_of(render_text(kLayer.scene(8), {.samples = samples, .seed = seed}).image);
+  return {found.mean / kExpected, found.error / kExpected};
+}
+
 struct Case {
   const char* name;
   Furnace furnace;
@@ -187,6 +197,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"ShadowRoulette", sky_furnace, &Planted::shadow_roulette},
                       Case{"SceneLightShare", core_furnace, &Planted::light_share},
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
+                      Case{"LobeBranches", lit_layer, &Planted::branch},
                       Case{"NearLightLines", near_light, &Planted::near_line},
                       Case{"LightThroughGlass", glass_furnace, &Planted::glass},
                       Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),

@@ -31,8 +31,7 @@ std::optional<Leaving> leave(const RefractingSphere& sphere, const Vec3d& from,
   const double cosine = direction.dot(normal);
   const double rest = 1 - sphere.eta() * sphere.eta() * (1 - cosine * cosine);
   if (rest < 0) return std::nullopt;
-  return Leaving{position,
-                 (direction - normal * cosine) * sphere.eta() + normal * std::sqrt(rest)};
+  return Leaving{position, (direction - normal * cosine) * sphere.eta() + normal * std::sqrt(rest)};
 }
 
 RefractingSphere random_sphere(RandomSurfaces& random, double eta) {

@@ -23,10 +23,12 @@ using testing::check_mean;
 using testing::chi_square_test;
 using testing::RunningStatistics;
 
-constexpr std::array kDensities = {WavelengthDensity::kUniform, WavelengthDensity::kVisible};
+constexpr std::array kDensities = {WavelengthDensity::kUniform, WavelengthDensity::kVisible,
+                                   WavelengthDensity::kFilm};
 
 std::string name_of(WavelengthDensity density) {
-  return density == WavelengthDensity::kUniform ? "uniform" : "visible";
+  if (density == WavelengthDensity::kUniform) return "uniform";
+  return density == WavelengthDensity::kVisible ? "visible" : "film";
 }
 
 TEST(WavelengthDensity, IntegratesToOneAndToItsInverse) {
@@ -124,8 +126,8 @@ void expect_unbiased() {
       SpectralDistribution(1.0), SpectralDistribution(BlackbodySpectrum(3000)),
       SpectralDistribution(RgbSpectrum::unbounded({5, 0.5, 0.1}, space)),
       SpectralDistribution(RgbSpectrum::illuminant({0.2, 0.3, 0.9}, space))};
-  // 4 spectra, 2 densities, 3 components, 3 numbers of wavelengths.
-  const double threshold = testing::family_wise_threshold(1e-3, 72);
+  // 4 spectra, 3 densities, 3 components, 3 numbers of wavelengths.
+  const double threshold = testing::family_wise_threshold(1e-3, 108);
   uint32_t stream = kCount * 100;
   for (std::size_t i = 0; i < spectra.size(); ++i) {
     const Vec3d expected = observe(spectra[i]);
@@ -156,6 +158,25 @@ TEST(EstimateXyz, AnErrorOfOnePercentWouldBeNoticed) {
     EXPECT_FALSE(
         check_mean("planted", found[static_cast<std::size_t>(component)], wrong[component]));
   }
+}
+
+// No density has less variance in R, G and B together, of equal radiances: their second moment is
+// the same wherever the wavelength lies.
+TEST(EstimateXyz, FilmDensityMakesAllWavelengthsCountTheSame) {
+  const RgbChromaticities srgb;
+  const Matrix3d to_rgb = rgb_to_xyz_matrix(srgb.primaries, srgb.white).inverse(true);
+  const auto second_moment = [&](double wavelength, WavelengthDensity density) {
+    return (color_matching(wavelength) * to_rgb).length2() /
+           std::pow(wavelength_pdf(wavelength, density) * kLuminousIntegral, 2);
+  };
+  const double expected = second_moment(550.5, WavelengthDensity::kFilm);
+  double visible = 0;
+  for (double wavelength = 380.5; wavelength < 780; ++wavelength) {
+    EXPECT_NEAR(second_moment(wavelength, WavelengthDensity::kFilm), expected, 1e-9 * expected);
+    visible += second_moment(wavelength, WavelengthDensity::kVisible) *
+               wavelength_pdf(wavelength, WavelengthDensity::kVisible);
+  }
+  EXPECT_LT(expected, 0.75 * visible);
 }
 
 TEST(EstimateXyz, VisibleDensityAndStratificationLowerTheVariance) {
