@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "freepath/base/rgb_primaries.h"
 
@@ -41,7 +42,11 @@ struct FilmDensity {
       integrals[i + 1] = integrals[i] + middle.length();
     }
     const double total = integrals.back();
-    for (double& integral : integrals) integral /= total;
+    for (std::size_t i = 0; i <= kParts; ++i) {
+      const double visible =
+          (visible_integral(observer_node(i)) - visible_first()) / visible_total();
+      integrals[i] = std::lerp(integrals[i] / total, visible, kFilmVisiblePart);
+    }
     for (std::size_t i = 0; i < kParts; ++i) pdf[i] = integrals[i + 1] - integrals[i];
   }
   std::size_t part_of(double wavelength) const {

@@ -14,11 +14,14 @@ namespace freepath {
 enum class WavelengthDensity {
   kUniform,
   kVisible,  ///< Density in proportion to sech²(0.0072 (λ - 538 nm)) [Radziszewski09].
-  /// Density in proportion to the length of what a wavelength adds to R, G and B of sRGB, so that
-  /// all add as much: the one of least variance, in R, G and B together, of equal radiances. Next
-  /// to none at the ends, where films see nothing.
+  /// For the most part in proportion to the length of what a wavelength adds to R, G and B of sRGB,
+  /// so that all add as much: the density of least variance, in R, G and B together, of equal
+  /// radiances. For kFilmVisiblePart it is kVisible, which makes what samples add vary smoothly
+  /// from end to end, so that few equidistant ones sum it up well.
   kFilm,
 };
+
+inline constexpr double kFilmVisiblePart = 0.3;
 
 /// Probability per nanometre of drawing a wavelength [1/nm]; its integral over the rendered
 /// wavelengths is 1, and it is 0 outside.

@@ -173,7 +173,7 @@ TEST(SpectralErrors, OfPicturesThatTimeEndsAreNotMoreThanStated) {
 TEST(SpectralErrors, AreAsStatedWhereNoiseIsNotOfColour) {
   const Spread spread =
       spread_of(lit_cube(R"("rgb L" [ 0.4 0.7 1 ])",
-                         R"("rgb sigma_a" [ 0.9 1 1.1 ] "rgb sigma_s" [ 9 9 9 ])"),
+                         R"("rgb sigma_a" [ 2.7 3 3.3 ] "rgb sigma_s" [ 0.5 0.5 0.5 ])"),
                 {.samples = 32}, 64);
   const int green = 1;
   EXPECT_GT(spread.p_value(green), 1e-3) << spread.ratio(green);
