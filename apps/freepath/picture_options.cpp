@@ -156,6 +156,11 @@ void add_path_options(CLI::App& command, PictureOptions& o) {
                 "Find lights in or near media at scatterings alone, not along lines that pass them")
       ->group("Method");
   command
+      .add_flag("--no-light-through-glass", o.no_light_through_glass,
+                "Find lamps from within spheres of glass by chance alone, not where light to them "
+                "is refracted")
+      ->group("Method");
+  command
       .add_flag("--no-lobe-splitting", o.no_lobe_splitting,
                 "Never split paths towards a sun, where phase functions have lobes")
       ->group("Method");
@@ -289,6 +294,7 @@ RenderSettings read_run_settings(const PictureOptions& options) {
   settings.shadow_roulette = !options.all_shadow_rays;
   settings.near_light_lines = !options.no_near_light_lines;
   settings.lobe_splitting = !options.no_lobe_splitting;
+  settings.light_through_glass = !options.no_light_through_glass;
   if (options.max_scatterings > 0) settings.max_scatterings = options.max_scatterings;
   WalkSettings& walk = settings.walk;
   walk.absorption = parse_absorption(options.absorption);

@@ -37,6 +37,7 @@ struct PictureOptions {
   bool all_shadow_rays = false;
   bool no_near_light_lines = false;
   bool no_lobe_splitting = false;
+  bool no_light_through_glass = false;
   uint64_t seed = 0;
   int threads = 0;
   std::size_t batch = RenderSettings{}.batch;

@@ -1,6 +1,8 @@
 #pragma once
 /// @file An affine map in double precision, cheaper to apply than a 4x4 matrix.
 
+#include <cmath>
+
 #include "freepath/base/vector.h"
 
 namespace freepath {
@@ -30,6 +32,18 @@ struct AffineTransform {
   }
   /// Takes a normal of B to A, where the map is from A to B. Not normalised.
   Vec3d normal_back(const Vec3d& n) const { return {x.dot(n), y.dot(n), z.dot(n)}; }
+  /// Whether it keeps angles.
+  bool is_similarity() const {
+    constexpr double kSame = 1e-9;
+    const double scale = x.length();
+    const auto is_small = [&](double value, double power) {
+      return std::abs(value) <= kSame * power;
+    };
+    const double squared = scale * scale;
+    return is_small(y.length() - scale, scale) && is_small(z.length() - scale, scale) &&
+           is_small(x.dot(y), squared) && is_small(y.dot(z), squared) &&
+           is_small(z.dot(x), squared);
+  }
   /// Negative where the map swaps handedness.
   double determinant() const { return x.dot(y.cross(z)); }
 };

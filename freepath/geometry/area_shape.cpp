@@ -222,15 +222,7 @@ class AreaShape::QuadricKind : public Kind {
     area_ = traced_.quadric.area() * sum / (kSteps * kSteps);
     const AffineTransform& map = traced_.object_to_part;
     scale_ = map.x.length();
-    constexpr double kSame = 1e-9;
-    const auto is_small = [&](double value, double reference) {
-      return std::abs(value) <= kSame * reference;
-    };
-    const double scale2 = scale_ * scale_;
-    const bool is_similarity =
-        is_small(map.y.length() - scale_, scale_) && is_small(map.z.length() - scale_, scale_) &&
-        is_small(map.x.dot(map.y), scale2) && is_small(map.y.dot(map.z), scale2) &&
-        is_small(map.z.dot(map.x), scale2);
+    const bool is_similarity = map.is_similarity();
     is_cone_ = traced_.quadric.is_whole_sphere() && is_similarity;
     is_uniform_ = is_similarity || traced_.quadric.kind() == freepath::QuadricKind::kDisk;
   }

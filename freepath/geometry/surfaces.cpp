@@ -245,6 +245,17 @@ SurfaceCosts Surfaces::costs() const {
   return costs;
 }
 
+std::vector<WholeSphere> Surfaces::whole_spheres() const {
+  std::vector<WholeSphere> spheres;
+  for (const TracedQuadric& traced : data_->world->quadrics) {
+    const AffineTransform& map = traced.object_to_part;
+    if (!traced.quadric.is_whole_sphere() || traced.is_reversed || !map.is_similarity()) continue;
+    spheres.push_back({traced.shape, traced.first_primitive, map.translation,
+                       traced.quadric.radius() * map.x.length()});
+  }
+  return spheres;
+}
+
 Box3f Surfaces::bounds() const {
   RTCBounds b;
   rtcGetSceneBounds(data_->scene.get(), &b);

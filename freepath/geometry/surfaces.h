@@ -46,6 +46,13 @@ struct ShadowEnd {
   std::optional<Target> target = {};
 };
 
+/// A sphere that is neither cut nor distorted, nor in an instance, whose outside is outside.
+struct WholeSphere {
+  uint32_t shape = 0, primitive = 0;  ///< Of SurfacePoint.
+  Vec3d center;                       ///< [world, relative to the origin of the rays]
+  double radius = 0;                  ///< [world]
+};
+
 /// What surfaces cost, counted, so that tests see how it grows.
 struct SurfaceCosts {
   uint64_t positions = 0;  ///< Positions of meshes that were looked at for bounds.
@@ -73,6 +80,8 @@ class Surfaces {
   Box3f bounds() const;
 
   SurfaceCosts costs() const;
+  /// All spheres of that kind.
+  std::vector<WholeSphere> whole_spheres() const;
 
   /// The nearest surface at t in (t_min, t_max), boundaries included.
   /// @param looked_at counts the surfaces that were tried; may be null

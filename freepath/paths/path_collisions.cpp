@@ -99,6 +99,16 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
   for (uint32_t k = 0; k < 3; ++k) u[k] = scatterings_.numbers[kLightNumber + k][i];
   const LightSample draw =
       draw_light(vector_at(scatterings_.position, i), light_spectra(path, scattering.in_rgb), u);
+  scattering.bend.reset();
+  if (setup_.glass_spheres != nullptr) {
+    const Vec3f position = vector_at(scatterings_.position, i);
+    const GlassSphere* const glass = setup_.glass_spheres->around(position);
+    const Vec3f lamp = position + draw.direction * draw.distance;
+    if (glass != nullptr && !glass->sphere.holds(Vec3d(lamp))) {
+      draw_light_through(i, path, *glass, draw);
+      return;
+    }
+  }
   scattering.end = shadow_end(draw);
   const float brought = share_of_light(path, draw.direction, draw.distance);
   scattering.radiance = light_throughput(path, scattering.in_rgb) * draw.radiance * brought;
@@ -133,8 +143,14 @@ void PathWavefront::cast_shadow(std::size_t i) {
   if (survival < 1) radiance *= 1 / survival;
   if (is_black(radiance)) return;
   const ScenePath& path = paths_[scattering.slot];
-  shadows_.add(scattering.slot, path, vector_at(scatterings_.position, i),
-               vector_at(scatterings_.to_light, i), scattering.end, path.media, radiance,
+  const Vec3f position = vector_at(scatterings_.position, i);
+  const Vec3f to_light = vector_at(scatterings_.to_light, i);
+  if (scattering.bend) {
+    shadows_.add_bent(scattering.slot, position, to_light, scattering.end, *scattering.bend,
+                      path.media, radiance, scattering.in_rgb);
+    return;
+  }
+  shadows_.add(scattering.slot, path, position, to_light, scattering.end, path.media, radiance,
                scattering.in_rgb);
 }
 
@@ -148,6 +164,10 @@ void PathWavefront::draw_direction_of(std::size_t i) {
 
 void PathWavefront::turn_scattered(std::size_t i, ScenePath& path) {
   path.pdf = scatterings_.next_pdf[i];
+  if (setup_.glass_spheres != nullptr) {
+    path.is_from_medium = true;
+    path.glass = nullptr;
+  }
   if (meter_ != nullptr) FluxMeter::tilt(scatterings_.next[meter_->axis()][i]);
   if (has_sides_ || scene_.surfaces) {
     const Vec3f position = vector_at(scatterings_.position, i);

@@ -169,7 +169,8 @@ void PathWavefront::escape(ScenePath& path) {
   const LightSeen light =
       scene_.lights->escape(path.turned_at, path.direction, light_spectra(path, in_rgb));
   // What next-event estimation could have found too is shared with it.
-  const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
+  const bool is_shared = path.pdf > 0 && path.glass == nullptr;
+  const float share = is_shared ? path.pdf / (path.pdf + light.pdf) : 1.0F;
   const float brought = share_of_light(path, path.direction, kFromOutside);
   const SampledSpectrum seen = light_throughput(path, in_rgb) * light.radiance * (share * brought);
   if (jobs_.layers.on() && path.scatterings == 0) {

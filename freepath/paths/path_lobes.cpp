@@ -72,6 +72,8 @@ bool PathWavefront::take_lobe_branch(ScenePath& path) {
   path.pdf = branch.pdf;
   path.sun_share = 1;
   path.is_branch = true;
+  path.glass = nullptr;  // the light of lamps is not its
+  path.is_from_medium = false;
   path.hero = branch.hero;
   path.only_hero = branch.only_hero;
   path.is_coloured = branch.is_coloured;

@@ -2,6 +2,8 @@
 
 #include "freepath/paths/path_wavefront.h"
 
+#include <utility>
+
 #include "freepath/paths/alpha_chance.h"
 
 namespace freepath {
@@ -180,11 +182,7 @@ void PathWavefront::meet_surface(std::size_t slot) {
   if (shape.light && !path.is_branch) {
     const bool in_rgb = sees_rgb(path);
     const SpectrumValues& spectra = light_spectra(path, in_rgb);
-    const LightSeen light =
-        path.pdf > 0
-            ? scene_.lights->hit(path.turned_at, *shape.light, hit.point, spectra)
-            : LightSeen{scene_.lights->emitted(*shape.light, hit.point, -path.direction, spectra),
-                        0};
+    const LightSeen light = see_light(path, *shape.light, hit, spectra);
     const float share = path.pdf > 0 ? path.pdf / (path.pdf + light.pdf) : 1.0F;
     (in_rgb ? path.rgb : path.radiance) += light_throughput(path, in_rgb) * light.radiance * share;
   }
@@ -271,10 +269,11 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
   }
   path.is_coloured = true;  // equal at these wavelengths is not equal at all
   path.only_hero = path.only_hero || next->hero_only;
-  path.pdf = next->specular ? 0.0F : next->pdf;
+  const float pdf = std::exchange(path.pdf, next->specular ? 0.0F : next->pdf);
+  const bool is_refracted = setup_.glass_spheres != nullptr && refract(path, hit, *next, pdf);
   const Departure departure = depart(path, hit, next->direction);
   set_media(path, departure.media);
-  turn(path, position, departure.origin, next->direction);
+  turn(path, is_refracted ? path.turned_at : position, departure.origin, next->direction);
 }
 
 }  // namespace freepath

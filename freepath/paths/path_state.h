@@ -12,6 +12,8 @@
 
 namespace freepath {
 
+struct GlassSphere;
+
 /// A path. Its first two cache lines are all that a flight between scatterings in a medium
 /// touches: thousands of paths are in flight, and most of their events are these.
 struct alignas(64) ScenePath {
@@ -58,12 +60,16 @@ struct alignas(64) ScenePath {
   Vec3f turned_at{0};
   /// Length of its ray up to a side of the domain, or a plane where paths split [world].
   float side = std::numeric_limits<float>::infinity();
-  uint32_t job = 0;            ///< Number of its job in OpenJobs.
-  uint32_t result = 0;         ///< Place of what it finds in OpenJobs::results.
-  float distance = 0;          ///< Flown from the camera, until the first event [world].
-  uint32_t sides = 0;          ///< Passed so far.
-  uint32_t level = 0;          ///< Planes where paths split that lie above.
-  bool line_is_drawn = false;  ///< NearLightLines has the line of its next flight.
+  uint32_t job = 0;     ///< Number of its job in OpenJobs.
+  uint32_t result = 0;  ///< Place of what it finds in OpenJobs::results.
+  float distance = 0;   ///< Flown from the camera, until the first event [world].
+  uint32_t sides = 0;   ///< Passed so far.
+  uint32_t level = 0;   ///< Planes where paths split that lie above.
+  /// Whose glass has refracted its ray once since a medium turned it; null: no such. Its `pdf` has
+  /// the share of refraction in it then, and `turned_at` is where the medium turned it.
+  const GlassSphere* glass = nullptr;
+  bool is_from_medium = false;  ///< A medium turned it last; known where there are GlassSpheres.
+  bool line_is_drawn = false;   ///< NearLightLines has the line of its next flight.
 
   /// The mean over the channels that it carries.
   float mean(const SampledSpectrum& values) const {

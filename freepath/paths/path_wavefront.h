@@ -12,6 +12,7 @@
 #include "freepath/paths/emission_tracer.h"
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
+#include "freepath/paths/glass_spheres.h"
 #include "freepath/paths/lobe_branch.h"
 #include "freepath/paths/near_light_lines.h"
 #include "freepath/paths/near_lights.h"
@@ -49,6 +50,8 @@ struct PathSetup {
   const ShadowGuide* shadow_guide = nullptr;
   /// Lights in or near media whose light lines bring; null: scatterings alone do.
   const NearLights* near_lights = nullptr;
+  /// Glass through which scatterings see lamps; null: paths find their light by chance.
+  const GlassSpheres* glass_spheres = nullptr;
   std::size_t slots = kPathsInFlight;
   /// Pixels of the camera along the edge of a pixel of the film.
   float pixel_edge = 1;
@@ -193,6 +196,16 @@ class PathWavefront {
   void take_only_light(std::size_t scattering, const ScenePath& path);
   /// Draws the light for a scattering in the queue.
   void draw_light_of(std::size_t scattering, const ScenePath& path);
+  /// Draws the light for a scattering inside of glass, through which it is seen.
+  void draw_light_through(std::size_t scattering, const ScenePath& path, const GlassSphere& glass,
+                          const LightSample& draw);
+  /// What a path sees of a lamp that it meets.
+  LightSeen see_light(const ScenePath& path, uint32_t light, const SurfaceHit& hit,
+                      const SpectrumValues& spectra) const;
+  /// Notes what a surface does to a path where there are GlassSpheres.
+  /// @param pdf of its direction before
+  /// @return whether it sees lamps now that are drawn through the glass too
+  bool refract(ScenePath& path, const SurfaceHit& hit, const MaterialSample& next, float pdf) const;
   /// What the alpha of a light leaves of a draw of it.
   LightSample with_alpha(LightSample light, const Vec3f& position) const;
   /// Follows a scattering in the queue in two directions, if its chance comes. The path has that
@@ -319,7 +332,9 @@ class PathWavefront {
     uint32_t slot = 0;
     bool in_rgb = false;  ///< Whether the light is.
     const PhaseFunction* phase = nullptr;
-    ShadowEnd end;             ///< End of the shadow ray.
+    ShadowEnd end;  ///< End of the shadow ray.
+    /// The glass that refracts it, if any does.
+    std::optional<ShadowTracer::Bend> bend;
     SampledSpectrum radiance;  ///< What the light brings unshadowed, times the density of the draw.
   };
   /// How the component scatters that the scattering before was of.

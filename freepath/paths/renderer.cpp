@@ -144,7 +144,10 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
                                      .lobes = settings.lobe_splitting};
     shadow_guide.emplace(factory, wanted, settings.walk.seed);
   }
+  std::optional<GlassSpheres> glass_spheres;
+  if (settings.light_through_glass) glass_spheres.emplace(scene);
   PathSetup setup;
+  setup.glass_spheres = glass_spheres && !glass_spheres->is_empty() ? &*glass_spheres : nullptr;
   setup.near_lights = near_lights && !near_lights->is_empty() ? &*near_lights : nullptr;
   setup.shadow_guide = shadow_guide ? &*shadow_guide : nullptr;
   setup.scene = &scene;

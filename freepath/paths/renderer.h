@@ -55,6 +55,9 @@ struct RenderSettings {
   /// Splits paths towards a light that outshines others, like the sun, where phase functions have
   /// lobes (LobeBranch).
   bool lobe_splitting = true;
+  /// Draws lamps for scatterings in spheres of glass (GlassSpheres); else paths find their light by
+  /// chance.
+  bool light_through_glass = true;
   /// Leaves out light from outside that is seen without a scattering: pictures of what is in the
   /// scene alone, premultiplied by alpha.
   bool transparent = false;

@@ -107,7 +107,10 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const
       ends = ends || is_end(there.position);
       is_free = is_free && (ends || passes(shadow, arrival, path, there, media));
     }
-    if (ends) return;
+    if (ends) {
+      shadow.media = media;
+      return;
+    }
     if (!is_free) {
       arrival.radiance = SampledSpectrum();
       return;
@@ -116,6 +119,7 @@ void ShadowTracer::trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const
     origin = beyond;
   }
   add_segment(shadow, path, media, begin, shadow.end.distance);
+  shadow.media = media;
 }
 
 void ShadowTracer::trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
@@ -124,6 +128,13 @@ void ShadowTracer::trace_surfaces(Shadow& shadow, Arrival& arrival, const SceneP
   } else {
     trace_part(shadow, arrival, path);
   }
+  if (shadow.bend == 0 || is_black(arrival.radiance)) return;
+  const Bend& bend = bends_[shadow.bend - 1];
+  shadow.origin = bend.origin;
+  shadow.direction = bend.direction;
+  shadow.end = bend.end;
+  shadow.media = media_sets_.cross(shadow.media, bend.shape, /*enters=*/false);
+  trace_part(shadow, arrival, path);
 }
 
 void ShadowTracer::trace_domain(Shadow& shadow, Arrival& arrival, const ScenePath& path) {
@@ -177,6 +188,7 @@ void ShadowTracer::trace_part(Shadow& shadow, Arrival& arrival, const ScenePath&
     if (!crossings_.overflowed()) break;
   }
   add_segment(shadow, path, media, begin, shadow.end.distance);
+  shadow.media = media;
 }
 
 void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics,
@@ -219,6 +231,7 @@ void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statisti
   }
   arrivals_.clear();
   shadows_.clear();
+  bends_.clear();
   batches_.clear();
   segments_.clear();
 }

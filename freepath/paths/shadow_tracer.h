@@ -47,6 +47,21 @@ class ShadowTracer {
     if (!scene_.surfaces) trace_surfaces(shadows_.back(), arrivals_.back(), path);
   }
 
+  /// Adds a ray that is refracted on its way.
+  /// @param end where it is refracted, at its target
+  /// @param direction,beyond of the ray from there to the light
+  struct Bend {
+    Vec3f origin, direction;
+    ShadowEnd end;
+    uint32_t shape;  ///< Shape whose inside it leaves.
+  };
+  void add_bent(uint32_t owner, const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
+                const Bend& bend, MediaSetId media, const SampledSpectrum& radiance, bool is_rgb) {
+    bends_.push_back(bend);
+    arrivals_.push_back({radiance, owner, kNoCell, is_rgb});
+    shadows_.push_back({origin, direction, end, media, 0, static_cast<uint32_t>(bends_.size())});
+  }
+
   /// Takes what a ray adds to a cell.
   using Deposit = std::function<void(ScenePath&, uint32_t cell, const SampledSpectrum&)>;
   /// Traces all rays, adds to their paths or cells, and forgets them.
@@ -67,6 +82,7 @@ class ShadowTracer {
     ShadowEnd end;
     MediaSetId media;
     uint32_t segments = 0;
+    uint32_t bend = 0;  ///< Number in bends_, from 1 on; 0: none.
   };
   /// A ray's way through one medium.
   struct Segment {
@@ -84,7 +100,7 @@ class ShadowTracer {
   void trace_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
   /// Traces a ray from side to side of a domain that repeats.
   void trace_domain(Shadow& shadow, Arrival& arrival, const ScenePath& path);
-  /// Traces a ray that meets no side.
+  /// Traces a ray that meets no side; its media are those at its end then, if it comes there.
   void trace_part(Shadow& shadow, Arrival& arrival, const ScenePath& path);
   /// Traces a ray where surfaces have holes or are there in part: one position after the other.
   void trace_porous_surfaces(Shadow& shadow, Arrival& arrival, const ScenePath& path);
@@ -104,6 +120,7 @@ class ShadowTracer {
   std::vector<Segment> segments_;  // ray after ray, each in the order of its way
   WalkBatches batches_;
   FlightStream flights_;
+  std::vector<Bend> bends_;
   std::vector<Shadow> shadows_;    // of all arrivals, unless they are open
   std::vector<TiedSurface> ties_;  // of one ray, as the crossings
   BoundaryCrossings crossings_;

@@ -162,6 +162,7 @@ def compare(
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
     lobe_splitting: bool = True,
+    light_through_glass: bool = True,
     progress: Progress | None = None,
     threads: int = 0,
     simd: str = "best",
@@ -190,7 +191,7 @@ def compare(
         cache: folder where references that are made are kept, and found again. None: they are not.
         seed: of the random numbers, 0 to 2^64 - 1.
         color, crop, absorption, emission, max_scatterings, wavelengths, shadow_roulette,
-            near_light_lines, lobe_splitting: as `render` has them.
+            near_light_lines, lobe_splitting, light_through_glass: as `render` has them.
         progress: called some times a second with the name of a step and the fraction of all work
             that is done; False ends the comparison with an Error.
         threads: to work on; 0: as many as the machine has.
@@ -210,7 +211,8 @@ def compare(
         reference_spp=reference_spp, cache=cache, seed=seed, color=color, crop=crop,
         absorption=absorption, emission=emission, max_scatterings=max_scatterings,
         wavelengths=wavelengths, shadow_roulette=shadow_roulette,
-        near_light_lines=near_light_lines, lobe_splitting=lobe_splitting, threads=threads, simd=simd,
+        near_light_lines=near_light_lines, lobe_splitting=lobe_splitting,
+        light_through_glass=light_through_glass, threads=threads, simd=simd,
     )  # fmt: skip
     return named(_freepath.compare(scene._core, render, options, progress), scene, render)
 

@@ -38,6 +38,7 @@ def picture_options(
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
     lobe_splitting: bool = True,
+    light_through_glass: bool = True,
     adaptive: bool = True,
     threads: int = 0,
     simd: str = "best",
@@ -50,7 +51,7 @@ def picture_options(
     options = common_options(
         scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
         max_scatterings, wavelengths, shadow_roulette, near_light_lines, lobe_splitting,
-        threads, simd,
+        light_through_glass, threads, simd,
     )  # fmt: skip
     options.time_limit = _seconds(time)
     options.adaptive = bool(adaptive)
@@ -92,6 +93,7 @@ def facts_of(scene: Scene, options: _freepath.RenderOptions) -> Facts:
         ("shadow_roulette", str(options.shadow_roulette)),
         ("near_light_lines", str(options.near_light_lines)),
         ("lobe_splitting", str(options.lobe_splitting)),
+        ("light_through_glass", str(options.light_through_glass)),
         ("adaptive", str(options.adaptive)),
     ]
 
@@ -99,7 +101,7 @@ def facts_of(scene: Scene, options: _freepath.RenderOptions) -> Facts:
 def common_options(
     scene: Scene, spp: Any, seed: Any, color: Any, tracker: Any, estimator: Any, interpolation: Any,
     absorption: Any, emission: Any, max_scatterings: Any, wavelengths: Any, shadow_roulette: Any,
-    near_light_lines: Any, lobe_splitting: Any, threads: Any, simd: Any,
+    near_light_lines: Any, lobe_splitting: Any, light_through_glass: Any, threads: Any, simd: Any,
 ) -> _freepath.RenderOptions:  # fmt: skip
     """Options that pictures and rays have in common."""
     if not isinstance(scene, Scene):
@@ -117,6 +119,7 @@ def common_options(
     options.shadow_roulette = bool(shadow_roulette)
     options.near_light_lines = bool(near_light_lines)
     options.lobe_splitting = bool(lobe_splitting)
+    options.light_through_glass = bool(light_through_glass)
     return options
 
 

@@ -156,6 +156,7 @@ def render(
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
     lobe_splitting: bool = True,
+    light_through_glass: bool = True,
     adaptive: bool = True,
     progress: Callable[[Progress], Any] | bool | None = None,
     threads: int = 0,
@@ -194,6 +195,8 @@ def render(
             them, so that the variance has an end; else at scatterings alone.
         lobe_splitting: whether paths split towards a light that outshines others, like the sun,
             where phase functions have lobes.
+        light_through_glass: whether lamps are drawn for scatterings within spheres of smooth glass,
+            where their light is refracted; else it is found there by chance.
         adaptive: whether pixels that are noisier take more samples, by a pilot: spp is their mean
             then. Not with a time below 20 s.
         progress: called some times a second with a `Progress`, by the thread that called `render`;
@@ -217,8 +220,8 @@ def render(
         layers=layers, crop=crop, tile=tile, tracker=tracker, estimator=estimator,
         interpolation=interpolation, absorption=absorption, emission=emission,
         max_scatterings=max_scatterings, wavelengths=wavelengths, shadow_roulette=shadow_roulette,
-        near_light_lines=near_light_lines, lobe_splitting=lobe_splitting, adaptive=adaptive,
-        threads=threads, simd=simd,
+        near_light_lines=near_light_lines, lobe_splitting=lobe_splitting,
+        light_through_glass=light_through_glass, adaptive=adaptive, threads=threads, simd=simd,
     )  # fmt: skip
     shown: Any = None
     if progress is True:
@@ -260,6 +263,7 @@ def radiance(
     shadow_roulette: bool = True,
     near_light_lines: bool = True,
     lobe_splitting: bool = True,
+    light_through_glass: bool = True,
     threads: int = 0,
     simd: str = "best",
 ) -> Estimate:
@@ -274,8 +278,8 @@ def radiance(
         directions: of shape (..., 3), away from the sensor; scaled to unit vectors.
         spp: samples of each ray [64]; two at least, if the error is to mean something.
         seed, color, tracker, estimator, interpolation, absorption, emission, max_scatterings,
-        wavelengths, shadow_roulette, near_light_lines, lobe_splitting, threads, simd: as `render`
-            has them.
+        wavelengths, shadow_roulette, near_light_lines, lobe_splitting, light_through_glass, threads,
+        simd: as `render` has them.
 
     Returns:
         Mean and standard error of R, G and B (linear), float64 of shape (..., 3).
@@ -287,7 +291,7 @@ def radiance(
     options = common_options(
         scene, spp, seed, color, tracker, estimator, interpolation, absorption, emission,
         max_scatterings, wavelengths, shadow_roulette, near_light_lines, lobe_splitting,
-        threads, simd,
+        light_through_glass, threads, simd,
     )  # fmt: skip
     options.layers = "variance"
     rays = Rays(origins, directions, np.inf)

@@ -36,6 +36,7 @@ RenderSettings render_settings(const PythonScene& scene, const RenderOptions& op
   settings.shadow_roulette = options.shadow_roulette;
   settings.near_light_lines = options.near_light_lines;
   settings.lobe_splitting = options.lobe_splitting;
+  settings.light_through_glass = options.light_through_glass;
   settings.adaptive =
       options.adaptive && (options.time_limit == 0 || options.time_limit >= kShortestPlannedTime);
   RenderWishes wishes{.samples = options.samples,
@@ -95,6 +96,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("shadow_roulette", &RenderOptions::shadow_roulette)
       .def_rw("near_light_lines", &RenderOptions::near_light_lines)
       .def_rw("lobe_splitting", &RenderOptions::lobe_splitting)
+      .def_rw("light_through_glass", &RenderOptions::light_through_glass)
       .def_rw("adaptive", &RenderOptions::adaptive);
 }
 

@@ -29,6 +29,7 @@ struct RenderOptions {
   bool shadow_roulette = true;
   bool near_light_lines = true;
   bool lobe_splitting = true;
+  bool light_through_glass = true;
   bool adaptive = false;
 };
 

@@ -158,7 +158,7 @@ def test_films_of_other_scenes_are_no_parts(cloud, scene, other):
         {"tracker": "weighted-delta"}, {"estimator": "residual-ratio"}, {"absorption": "analog"},
         {"emission": "analog"}, {"interpolation": "trilinear"}, {"max_scatterings": 9},
         {"shadow_roulette": False}, {"near_light_lines": False}, {"lobe_splitting": False},
-        {"adaptive": False},
+        {"light_through_glass": False}, {"adaptive": False},
         {"color": "spectral"}, {"wavelengths": 3}, {"layers": "all"}, {"seed": 1},
     ],
     ids=str,

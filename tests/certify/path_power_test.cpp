@@ -141,6 +141,16 @@ FilmMean near_light(uint32_t samples, uint64_t seed) {
   return {found.mean / expected, found.error / expected};
 }
 
+/// A ball of glass with fog in it.
+FilmMean glass_furnace(uint32_t samples, uint64_t seed) {
+  return render_furnace(
+      R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 1 1 1 ] )"
+      R"("rgb sigma_a" [ 0 0 0 ] "float g" 0.5)"
+      "\nMediumInterface \"fog\" \"\" Material \"dielectric\" \"float eta\" 1.4\n"
+      "Shape \"sphere\" \"float radius\" 1\n",
+      samples, seed);
+}
+
 /// A layer under a sun, over what quadrature says.
 FilmMean lit_layer(uint32_t samples, uint64_t seed) {
   static const LitLayer kLayer{0, 2, 0.8, Vec3d(0.8, 0, 0.6)};
@@ -190,6 +200,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
                       Case{"LobeBranches", lit_layer, &Planted::branch},
                       Case{"NearLightLines", near_light, &Planted::near_line},
+                      Case{"LightThroughGlass", glass_furnace, &Planted::glass},
                       Case{"EmissionGuide", core_furnace, &Planted::emission_guide}),
     [](const auto& test) { return std::string(test.param.name); });
 

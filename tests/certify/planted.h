@@ -12,6 +12,7 @@ struct Planted {
   float emission_guide = 1;   ///< On what directions of the emission guide are multiplied by.
   float branch = 1;           ///< On branches of paths in the lobes around a sun.
   float near_line = 1;        ///< On what lines past near lights bring.
+  float glass = 1;            ///< On what lamps bring that glass refracts.
   float order = 1;            ///< On terms of a series above order zero, or on the whole series.
 };
 

@@ -36,6 +36,7 @@ struct PictureOptions {
   std::size_t batch = 2048;
   bool near_light_lines = true;
   bool lobe_splitting = true;
+  bool light_through_glass = true;
   double time_limit = 0;               ///< [s] by the clock; 0: none.
   std::function<double()> clock = {};  ///< RenderSettings::clock
 };
@@ -60,6 +61,7 @@ inline RenderSettings settings_of(const BuiltScene& built, const PictureOptions&
   settings.batch = options.batch;
   settings.near_light_lines = options.near_light_lines;
   settings.lobe_splitting = options.lobe_splitting;
+  settings.light_through_glass = options.light_through_glass;
   settings.time_limit = options.time_limit;
   settings.clock = options.clock;
   settings.max_scatterings = built.picture.max_scatterings;
