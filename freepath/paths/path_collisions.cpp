@@ -237,11 +237,8 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
     ScenePath& path = paths_[scattered_[i].slot];
     path.is_dead = !path.is_branch && !survives(path, scatterings_.numbers[kRouletteNumber][i]);
     if (path.is_dead || !draws_lights) continue;
-    if (splits) {
-      const float throughput = path.mean(path.throughput) * path.sun_share;
-      scatterings_.lobe_scale[i] =
-          path.is_branch ? std::max(throughput, setup_.roulette_threshold) : throughput;
-    }
+    scatterings_.lobe_scale[i] = magnitude(path) * path.sun_share;
+    scatterings_.lobe_roulette[i] = path.is_branch ? setup_.roulette_threshold : 0.0F;
     chooses_light ? draw_light_of(i, path) : take_only_light(i, path);
     if (scatterings_.is_given[i] != 0) {
       scatterings_.light_value[i] = scattered_[i].phase->evaluate(
@@ -257,8 +254,10 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
     if (draws_lights) cast_shadow(i);
     if (guide != nullptr && !path.is_branch) draw_emission(i, *guide);
     if (path.is_branch) {
-      path.is_dead = !survives(path, scatterings_.numbers[kRouletteNumber][i]);
+      const float survival = scatterings_.lobe_survival[i];
+      path.is_dead = !(scatterings_.numbers[kRouletteNumber][i] < survival);
       if (path.is_dead) continue;
+      path.throughput *= 1 / survival;
     }
     if (scatterings_.is_given[i] != 0) draw_direction_of(i);
     if (splits) split(i, path, shadows.dominant);

@@ -110,19 +110,34 @@ HWY_INLINE DominantLanes dominant_lanes(const ShadowRoulette& roulette, const Ve
           hn::Ge(cosine, set(ShadowRoulette::kSameDirection))};
 }
 
-/// With what probability paths split into the lobe around the dominant light.
-HWY_INLINE VecF lobe_chances(const ShadowRoulette& roulette, VecF g, const VectorLanes& before,
-                             VecF throughput, VecF root) {
-  if (roulette.lobe_scale == 0) return hn::Zero(kFloat);
-  // Two scatterings have the square of the mean cosine of one; of Henyey's and Greenstein's
-  // function it is the function of that.
-  const VectorLanes dominant{set(roulette.dominant.x), set(roulette.dominant.y),
-                             set(roulette.dominant.z)};
-  const VecF turned = HenyeyGreensteinLanes(hn::Mul(g, g)).evaluate(before, dominant);
-  const VecF expected =
-      hn::Mul(hn::Mul(hn::Mul(throughput, set(roulette.lobe_scale)), turned), root);
+/// What ShadowRoulette says of branches.
+struct LobeLanes {
+  VecF survival;  ///< With what probability a branch goes on, (0, 1].
+  VecF chance;    ///< With what probability a path that goes on splits.
+};
+
+/// @param roulette_below ScatteringStream::lobe_roulette
+HWY_INLINE LobeLanes lobe_lanes(const ShadowRoulette& roulette, VecF g, const VectorLanes& before,
+                                VecF throughput, VecF roulette_below, VecF root) {
+  const VecF one = set(1.0F);
+  VecF expected = hn::Zero(kFloat);
+  if (roulette.lobe_scale != 0) {
+    // Two scatterings have the square of the mean cosine of one; of Henyey's and Greenstein's
+    // function it is the function of that.
+    const VectorLanes dominant{set(roulette.dominant.x), set(roulette.dominant.y),
+                               set(roulette.dominant.z)};
+    const VecF turned = HenyeyGreensteinLanes(hn::Mul(g, g)).evaluate(before, dominant);
+    expected = hn::Mul(hn::Mul(throughput, set(roulette.lobe_scale)), turned);
+  }
+  const VecF worth = hn::Max(throughput, hn::Mul(expected, root));
+  const VecF survival =
+      hn::IfThenElse(hn::Lt(worth, roulette_below), hn::Div(worth, roulette_below), one);
+  // A coarse cell may look dark of which an edge is lit.
+  expected = hn::Mul(expected, hn::Max(root, set(ShadowRoulette::kLeastRoot)));
   const MaskF enough = hn::Ge(expected, set(ShadowRoulette::kLeastLobeChance));
-  return hn::IfThenElseZero(enough, hn::Min(expected, set(1.0F)));
+  const VecF chance = hn::Min(hn::Div(expected, survival), one);
+  // The numbers that decide have digits of 1 alone at their upper end; so do chances.
+  return {survival, hn::IfThenElseZero(enough, hn::Sub(one, hn::Sub(one, chance)))};
 }
 
 /// ShadowRoulette::survival(), lane by lane.
@@ -160,9 +175,11 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
     const VecF brightness = hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share);
     hn::Store(survival_lanes(roulette, dominant, brightness), kFloat,
               &scatterings.shadow_survival[i]);
-    hn::Store(lobe_chances(roulette, g, before, hn::Load(kFloat, &scatterings.lobe_scale[i]),
-                           dominant.root),
-              kFloat, &scatterings.lobe_chance[i]);
+    const LobeLanes lobe =
+        lobe_lanes(roulette, g, before, hn::Load(kFloat, &scatterings.lobe_scale[i]),
+                   hn::Load(kFloat, &scatterings.lobe_roulette[i]), dominant.root);
+    hn::Store(lobe.survival, kFloat, &scatterings.lobe_survival[i]);
+    hn::Store(lobe.chance, kFloat, &scatterings.lobe_chance[i]);
     VecF pdf;
     const VectorLanes after =
         phase.sample(before, hn::Load(kFloat, &scatterings.numbers[kPhaseNumber][i]),

@@ -50,8 +50,11 @@ struct ScatteringStream {
   Row<float> shadow_survival{};  ///< With what probability to cast a shadow ray, (0, 1].
   std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
   Row<float> next_pdf{};             ///< Density of that direction [1/sr].
-  Row<float> lobe_scale{};           ///< The path's throughput, after its roulette.
-  Row<float> lobe_chance{};          ///< With what probability it splits: LobeBranch.
+  // Of branches: LobeBranch.
+  Row<float> lobe_scale{};     ///< Largest magnitude of what is left of the throughput for a sun.
+  Row<float> lobe_roulette{};  ///< Below what a branch plays Russian roulette; 0 for others.
+  Row<float> lobe_survival{};  ///< With what probability a branch goes on, (0, 1].
+  Row<float> lobe_chance{};    ///< With what probability a path that goes on splits.
 };
 
 }  // namespace freepath

@@ -24,12 +24,16 @@ struct ShadowRoulette {
   Vec3f per_cell{0};             ///< Cells in a unit of length [1/world].
   Vec3i counts{0};               ///< Number of cells along each axis.
   const float* roots = nullptr;  ///< Transmittances of cells, x fastest; null: none is known.
-  /// Factor of the chance with which a path splits (LobeBranch), which is this times the path's
-  /// throughput, the density with which two scatterings would turn it into the dominant direction,
-  /// and the cell's value, up to 1; 0: none does.
+  /// Factor of what a path is expected to bring of the dominant light (LobeBranch), over what an
+  /// isotropic scattering of all light does: this times its throughput, the density with which two
+  /// scatterings would turn it into the dominant direction, and the cell's value. Up to 1 it is the
+  /// chance with which a path splits; a branch is worth that or its throughput, whichever is more,
+  /// when it plays Russian roulette. 0: none splits.
   float lobe_scale = 0;
-  /// Chances below are none.
-  static constexpr float kLeastLobeChance = 0.01F;
+  static constexpr float kLeastRoot = 0.1F;
+  /// Chances below are none. Small ones take little time, and yet hold what paths bring that come
+  /// to a sharp peak by chance.
+  static constexpr float kLeastLobeChance = 1e-4F;
 
   /// The probability with which to cast a ray, (0, 1]; if it is cast, what it brings is to be
   /// divided by that. The lanes compute the same in the same order (transport/scattering-inl.h).
