@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "tests/scene/rendered_scenes.h"
@@ -91,9 +93,9 @@ TEST(GlassSpheres, OthersAreLeftToChance) {
         std::string(R"(Material "dielectric" Scale 1 1.2 1 Shape "sphere")"),
         std::string(R"(Material "dielectric" "spectrum eta" "glass-BK7" Shape "sphere")"),
         std::string(R"(Material "dielectric" ReverseOrientation Shape "sphere")")}) {
-    const std::string scene = kLook + kLamps + juice(1.5, 0.2, 0) +
-                              "AttributeBegin MediumInterface \"juice\" \"\"\n" + shape +
-                              "\nAttributeEnd\n";
+    const std::string begin = kLook + kLamps + juice(1.5, 0.2, 0);
+    const std::string scene = fmt::format(
+        "{}AttributeBegin MediumInterface \"juice\" \"\"\n{}\nAttributeEnd\n", begin, shape);
     const Picture on = render_text(scene, {.samples = 4});
     const Picture off = render_text(scene, {.samples = 4, .light_through_glass = false});
     EXPECT_EQ(on.image.values, off.image.values) << shape;
