@@ -24,8 +24,7 @@ inline std::array<Vec3d, 8> corners_of(const Box3d& box) {
 class OrientedBox {
  public:
   /// A box along the axes of the world, unless a map from its own space to the world is given.
-  // NOLINTNEXTLINE(google-explicit-constructor): what takes one of these takes any box.
-  OrientedBox(const Box3d& box, const Matrix4d& to_world = Matrix4d())
+  explicit OrientedBox(const Box3d& box, const Matrix4d& to_world = Matrix4d())
       : box_(box), to_world_(to_world) {}
 
   /// The box in its own space.

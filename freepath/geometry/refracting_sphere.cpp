@@ -35,7 +35,7 @@ class RefractingSphere::Plane {
   }
 
   double angle() const { return angle_; }
-  /// What is outside, as seen along the ray that leaves at an angle.
+  /// View of the outside along the ray that leaves at an angle.
   struct Seen {
     double angle;      ///< Of where it passes the distance of the point outside.
     double slope;      ///< Derivative of that.

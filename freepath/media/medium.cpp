@@ -339,14 +339,16 @@ Box3d Medium::outer_bounds() const { return bounds_with(1); }
 
 OrientedBox Medium::outer_box() const {
   const Field& first = *components_[0].density;
-  if (first.function || first.index_to_world.determinant() == 0) return outer_bounds();
+  if (first.function || first.index_to_world.determinant() == 0) {
+    return OrientedBox(outer_bounds());
+  }
   const Matrix4d from_world = first.index_to_world.inverse();
   Box3d box;
   for (const Component& component : components_) {
     box.extendBy(Imath::transform(box_of_voxels(component.density->voxels, 1),
                                   component.density->index_to_world * from_world));
   }
-  return {box, first.index_to_world};
+  return OrientedBox(box, first.index_to_world);
 }
 
 Box3d Medium::box_of_voxels(const BrickMap& map, double filter) const {

@@ -6,7 +6,7 @@ namespace freepath {
 
 void PathWavefront::draw_light_through(std::size_t i, const ScenePath& path,
                                        const GlassSphere& glass, const LightSample& draw) {
-  // What is not drawn stays dark: no straight ray leaves the sphere.
+  // Lamps that are not drawn stay dark: no straight ray leaves the sphere.
   scatterings_.light_pdf[i] = 0;
   scatterings_.light_found[i] = 1;
   scatterings_.brightness[i] = 0;

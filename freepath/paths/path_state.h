@@ -31,8 +31,8 @@ struct alignas(64) ScenePath {
   float pdf = 0;
   /// What its flight collects of emission counts for, the rest being that of EmissionTracer's.
   float emission_share = 1;
-  /// What of the light in the cone around a sun the path brings, the rest being its branches'; of a
-  /// branch, which brings no other light, 1. See LobeBranch.
+  /// Share of the light in the cone around a sun that the path brings, the rest being its
+  /// branches'; of a branch, which brings no other light, 1. See LobeBranch.
   float sun_share = 1;
   uint8_t hero : 4 = 0;  ///< The channel that decides where channels part.
   bool only_hero : 1 = false;

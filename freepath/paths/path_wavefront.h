@@ -46,7 +46,7 @@ struct PathSetup {
   /// Whether scatterings in emissive media also look for their light along lines of its own; where
   /// nothing is said, if little of the medium glows.
   std::optional<bool> samples_emission = {};
-  /// Which shadow rays are cast, and where paths split; null: all, and nowhere.
+  /// Says which shadow rays are cast and where paths split; null: all are, and none does.
   const ShadowGuide* shadow_guide = nullptr;
   /// Lights in or near media whose light lines bring; null: scatterings alone do.
   const NearLights* near_lights = nullptr;
@@ -199,7 +199,7 @@ class PathWavefront {
   /// Draws the light for a scattering inside of glass, through which it is seen.
   void draw_light_through(std::size_t scattering, const ScenePath& path, const GlassSphere& glass,
                           const LightSample& draw);
-  /// What a path sees of a lamp that it meets.
+  /// Sees the light of a lamp that a path meets.
   LightSeen see_light(const ScenePath& path, uint32_t light, const SurfaceHit& hit,
                       const SpectrumValues& spectra) const;
   /// Notes what a surface does to a path where there are GlassSpheres.
@@ -212,7 +212,7 @@ class PathWavefront {
   /// drawn for it, and its share.
   /// @param dominant direction from which most light comes
   void split(std::size_t scattering, ScenePath& path, const Vec3f& dominant);
-  /// What of a light a path brings, the rest being its branches'.
+  /// Share of a light that a path brings, the rest being its branches'.
   /// @param distance to it
   float share_of_light(const ScenePath& path, const Vec3f& direction, float distance) const {
     if (path.sun_share == 1 && !path.is_branch) return 1;

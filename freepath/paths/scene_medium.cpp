@@ -123,7 +123,8 @@ Box3d SceneMedium::outer_bounds() const { return medium_ ? medium_->outer_bounds
 
 OrientedBox SceneMedium::outer_box() const {
   if (medium_) return medium_->outer_box();
-  return {Box3d(Vec3d(-0.5), Vec3d(colors_->counts) - Vec3d(0.5)), colors_->index_to_world};
+  return OrientedBox(Box3d(Vec3d(-0.5), Vec3d(colors_->counts) - Vec3d(0.5)),
+                     colors_->index_to_world);
 }
 
 std::size_t SceneMedium::bytes_of_set(int wavelengths) const {

@@ -47,14 +47,15 @@ class ShadowTracer {
     if (!scene_.surfaces) trace_surfaces(shadows_.back(), arrivals_.back(), path);
   }
 
-  /// Adds a ray that is refracted on its way.
-  /// @param end where it is refracted, at its target
-  /// @param direction,beyond of the ray from there to the light
+  /// Ray from where another is refracted on to the light.
   struct Bend {
-    Vec3f origin, direction;
+    Vec3f origin, direction;  ///< [world, relative to the scene's origin]; unit.
     ShadowEnd end;
     uint32_t shape;  ///< Shape whose inside it leaves.
   };
+  /// Adds a ray that is refracted on its way, as add().
+  /// @param end where it is refracted, at its target
+  /// @param bend the ray from there on
   void add_bent(uint32_t owner, const Vec3f& origin, const Vec3f& direction, const ShadowEnd& end,
                 const Bend& bend, MediaSetId media, const SampledSpectrum& radiance, bool is_rgb) {
     bends_.push_back(bend);

@@ -48,7 +48,8 @@ PathScene make_volume_scene(const VolumeMedium& medium, const std::optional<Came
     SurfaceScene surfaces;
     add_ground(*ground, bounds, camera ? camera->position() : bounds.center(), scene, surfaces);
     scene.surfaces.emplace(surfaces, scene.origin);
-    scene.is_clear[0] = !scene.surfaces->intersects_box(std::vector<uint32_t>{0}, bounds);
+    scene.is_clear[0] =
+        !scene.surfaces->intersects_box(std::vector<uint32_t>{0}, OrientedBox(bounds));
   }
   if (medium.sides.extents) scene.domain = make_domain(medium.sides, scene, ground);
   return scene;

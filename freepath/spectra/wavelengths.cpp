@@ -46,8 +46,9 @@ class FilmDensity {
     for (std::size_t i = 0; i < kParts; ++i) {
       integrals_[i + 1] = integrals_[i] + (pdf_[i] + pdf_[i + 1]) / 2;
     }
-    for (double& value : pdf_) value /= integrals_.back();
-    for (double& value : integrals_) value /= integrals_.back();
+    const double total = integrals_.back();
+    for (double& value : pdf_) value /= total;
+    for (double& value : integrals_) value /= total;
   }
 
   double at(double wavelength) const {

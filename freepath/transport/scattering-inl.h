@@ -83,7 +83,7 @@ HWY_INLINE VecF cell_along(VecF position, float corner, float per_cell, int coun
   return hn::Floor(hn::Min(hn::Max(at, hn::Zero(kFloat)), last));
 }
 
-/// What ShadowRoulette knows of scatterings and the directions to their lights.
+/// Part of ShadowRoulette that concerns some scatterings and the directions to their lights.
 struct DominantLanes {
   VecF root;   ///< Of the cells' transmittances.
   MaskF same;  ///< Whether the light is the dominant one.
@@ -110,12 +110,13 @@ HWY_INLINE DominantLanes dominant_lanes(const ShadowRoulette& roulette, const Ve
           hn::Ge(cosine, set(ShadowRoulette::kSameDirection))};
 }
 
-/// What ShadowRoulette says of branches.
+/// Chances of branches by ShadowRoulette.
 struct LobeLanes {
   VecF survival;  ///< With what probability a branch goes on, (0, 1].
   VecF chance;    ///< With what probability a path that goes on splits.
 };
 
+/// Chances of branches that fly on, and of paths to split.
 /// @param roulette_below ScatteringStream::lobe_roulette
 HWY_INLINE LobeLanes lobe_lanes(const ShadowRoulette& roulette, VecF g, const VectorLanes& before,
                                 VecF throughput, VecF roulette_below, VecF root) {

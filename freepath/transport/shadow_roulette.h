@@ -30,6 +30,8 @@ struct ShadowRoulette {
   /// chance with which a path splits; a branch is worth that or its throughput, whichever is more,
   /// when it plays Russian roulette. 0: none splits.
   float lobe_scale = 0;
+  /// Least root of transmittance for the chance of splitting: a coarse cell may look dark of which
+  /// an edge is lit, and where nothing splits peaks are as they were.
   static constexpr float kLeastRoot = 0.1F;
   /// Chances below are none. Small ones take little time, and yet hold what paths bring that come
   /// to a sharp peak by chance.

@@ -311,7 +311,7 @@ TEST(Surfaces, BoxesAreMetWhereTheSurfaceIsAndNotWithinOrOutside) {
   const auto meets = [&](uint32_t shape, const Vec3d& centre, double half) {
     const std::array<uint32_t, 1> shapes = {shape};
     return surfaces.intersects_box(
-        shapes, Box3d(origin + centre - Vec3d(half), origin + centre + Vec3d(half)));
+        shapes, OrientedBox(Box3d(origin + centre - Vec3d(half), origin + centre + Vec3d(half))));
   };
   for (const uint32_t round : {0U, 1U}) {
     EXPECT_FALSE(meets(round, Vec3d(0), 0.5));

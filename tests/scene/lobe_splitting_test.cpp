@@ -185,22 +185,10 @@ TEST(LobeSplitting, IsLeftOutWhereItCantHelp) {
 // What is scattered once is in the layer of that.
 TEST(LobeSplitting, LayersTellWhatWasScatteredOnce) {
   const LitLayer layer{0.05, 1.2, 0.8, Vec3d(0.5, 0, 0.75).normalized()};
-  Diagnostics diagnostics;
-  const BuiltScene built = build_scene(parse(layer.scene(16), diagnostics), diagnostics);
-  RenderSettings settings = settings_of(built, {.samples = 512});
-  settings.layers = LayerSet::all();
-  const Image image = render_scene(built.scene, ColorMode::kRgb, settings).film.to_image();
-  const auto mean_of = [&](const char* name) {
-    RunningStatistics statistics;
-    const int channel = find_channel(image, name).value();
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-      statistics.add(image.values[i * image.channels.size() + channel]);
-    }
-    return statistics;
-  };
-  EXPECT_TRUE(
-      check_mean("direct", mean_of("direct.R"), layer.once(), {.largest_relative_error = 0.01}));
-  EXPECT_TRUE(check_mean("indirect", mean_of("indirect.R"), layer.twice(),
+  const Image image = image_with_layers(layer.scene(16), 512);
+  EXPECT_TRUE(check_mean("direct", statistics_of(image, "direct.R"), layer.once(),
+                         {.largest_relative_error = 0.01}));
+  EXPECT_TRUE(check_mean("indirect", statistics_of(image, "indirect.R"), layer.twice(),
                          {.largest_relative_error = 0.01}));
 }
 

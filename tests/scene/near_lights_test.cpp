@@ -224,23 +224,10 @@ AttributeBegin AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] Translate 0 0 3
 // What is scattered once is in the layer of that, wherever the path went.
 TEST(NearLights, LayersTellWhatWasScatteredOnce) {
   const std::string world = kPoint + fog(Vec3d(0.3), Vec3d(0.9), 0);
-  Diagnostics diagnostics;
-  const BuiltScene built =
-      build_scene(parse(rays_along_z(world, kUnlimited), diagnostics), diagnostics);
-  RenderSettings settings = settings_of(built, {.samples = 2048});
-  settings.layers = LayerSet::all();
-  const RenderResult result = render_scene(built.scene, ColorMode::kRgb, settings);
-  const Image image = result.film.to_image();
-  const auto mean_of = [&](const char* name) {
-    RunningStatistics statistics;
-    const int channel = find_channel(image, name).value();
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-      statistics.add(image.values[i * image.channels.size() + channel]);
-    }
-    return statistics;
-  };
-  EXPECT_EQ(mean_of("emission.R").mean(), 0);
-  EXPECT_TRUE(check_mean("direct", mean_of("direct.R"), scattered_once(0.3, 0.9, 0, kHeight, two),
+  const Image image = image_with_layers(rays_along_z(world, kUnlimited), 2048);
+  EXPECT_EQ(statistics_of(image, "emission.R").mean(), 0);
+  EXPECT_TRUE(check_mean("direct", statistics_of(image, "direct.R"),
+                         scattered_once(0.3, 0.9, 0, kHeight, two),
                          {.largest_relative_error = 0.01}));
 }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "freepath/base/error.h"
@@ -110,6 +111,25 @@ inline Picture render_text(const std::string& text, const PictureOptions& option
   Picture picture = picture_of(built, options);
   picture.warnings = diagnostics.warnings();
   return picture;
+}
+
+/// A picture in R, G, B with all layers.
+inline Image image_with_layers(const std::string& text, uint32_t samples) {
+  Diagnostics diagnostics;
+  const BuiltScene built = build_scene(parse(text, diagnostics), diagnostics);
+  RenderSettings settings = settings_of(built, {.samples = samples});
+  settings.layers = LayerSet::all();
+  return render_scene(built.scene, ColorMode::kRgb, settings).film.to_image();
+}
+
+/// Values of a channel over all pixels.
+inline RunningStatistics statistics_of(const Image& image, std::string_view channel) {
+  RunningStatistics statistics;
+  const int number = find_channel(image, channel).value();
+  for (std::size_t i = 0; i < image.pixel_count(); ++i) {
+    statistics.add(image.values[i * image.channels.size() + number]);
+  }
+  return statistics;
 }
 
 /// A film of some pixels, without a filter that reaches into other pixels.

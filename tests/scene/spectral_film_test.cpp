@@ -40,14 +40,8 @@ double expected_radiance(double low, double high) {
 }
 
 void expect_bucket(const Image& image, const std::string& channel, double low, double high) {
-  const auto found = find_channel(image, channel);
-  ASSERT_TRUE(found) << channel;
-  RunningStatistics pixels;
-  for (int row = 0; row < image.height; ++row) {
-    for (int column = 0; column < image.width; ++column) {
-      pixels.add(image.pixel(column, row)[*found]);
-    }
-  }
+  ASSERT_TRUE(find_channel(image, channel)) << channel;
+  const RunningStatistics pixels = statistics_of(image, channel);
   const double expected = expected_radiance(low, high);
   EXPECT_TRUE(check_mean(channel, pixels, expected, {.z = 4.5}));
   EXPECT_LT(pixels.standard_error(), 0.01 * expected) << channel;

@@ -92,8 +92,8 @@ void make_periodic(PathScene& scene, PeriodicSides sides, const Box3d& standing,
     medium = repeated(medium, sides, super_voxel);
     // Its voxels at the other side may lie where surfaces are.
     if (scene.surfaces && scene.is_clear[i]) {
-      scene.is_clear[i] =
-          !scene.surfaces->intersects_box(shapes, along_domain(medium.bounds(), sides));
+      scene.is_clear[i] = !scene.surfaces->intersects_box(
+          shapes, OrientedBox(along_domain(medium.bounds(), sides)));
     }
   }
   box = along_domain(box, sides);

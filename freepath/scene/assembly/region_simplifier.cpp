@@ -131,7 +131,7 @@ class Simplifier {
       if (!boundary.empty() && inside.count(id) == 0) continue;
       if (filling) scene_.media[id] = *filling;
       dissolve(id);
-      scene_.is_clear[id] = !traced.intersects_box(others, reach.bounds());
+      scene_.is_clear[id] = !traced.intersects_box(others, OrientedBox(reach.bounds()));
       return;
     }
   }
