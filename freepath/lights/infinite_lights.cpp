@@ -159,6 +159,26 @@ void InfiniteLights::finish() {
   }
 }
 
+const InfiniteLights::Light* InfiniteLights::only_drawn() const {
+  const Light* only = nullptr;
+  for (const Light& light : lights_) {
+    if (!light.is_drawn) continue;
+    if (only != nullptr) return nullptr;
+    only = &light;
+  }
+  return only;
+}
+
+const Sun* InfiniteLights::only_sun() const {
+  const Light* const only = only_drawn();
+  return only == nullptr ? nullptr : std::get_if<Sun>(&only->radiance);
+}
+
+SampledSpectrum InfiniteLights::only_radiance(const SpectrumValues& values) const {
+  const Light& sun = *only_drawn();
+  return radiance_of(sun, {std::get_if<Sun>(&sun.radiance)->radiance(), 0}, values);
+}
+
 SampledSpectrum InfiniteLights::radiance_of(const Light& light, const LightValue& value,
                                             const SpectrumValues& values) {
   if (const auto* const constant = std::get_if<Constant>(&light.radiance)) {
@@ -172,7 +192,7 @@ LightValue InfiniteLights::plain_value(const Light& light, const Vec3f& towards)
     return image->evaluate(towards);
   }
   if (const auto* const sun = std::get_if<Sun>(&light.radiance)) {
-    return sun->contains(towards) ? LightValue{sun->radiance(), sun->pdf()} : LightValue{};
+    return sun->disc().contains(towards) ? LightValue{sun->radiance(), sun->pdf()} : LightValue{};
   }
   if (std::holds_alternative<Constant>(light.radiance)) return {{}, kUniformSpherePdf};
   return std::get_if<OctahedralEnvironment>(&light.radiance)->evaluate(towards);
@@ -194,7 +214,7 @@ void InfiniteLights::add_seen(const Light& light, const Vec3f& from, const Vec3f
     solid_angle = light.frame->light_solid_angle(length);
   }
   const LightValue value = plain_value(light, towards);
-  all.radiance += radiance_of(light, value, values);
+  (light.is_drawn ? all.radiance : all.undrawn) += radiance_of(light, value, values);
   all.pdf += light.share * (light.portal ? portal_pdf : value.pdf * solid_angle);
 }
 
@@ -213,7 +233,7 @@ LightDirection InfiniteLights::sample_plain(const Light& light, float u0, float 
     return image->sample(u0, u1);
   }
   const auto& sun = *std::get_if<Sun>(&light.radiance);  // all else is drawn through portals alone
-  return {sun.sample(u0, u1), {sun.radiance(), sun.pdf()}};
+  return {sun.disc().sample(u0, u1), {sun.radiance(), sun.pdf()}};
 }
 
 LightSample InfiniteLights::sample(const Vec3f& from, const SpectrumValues& values, float u0,
@@ -247,7 +267,7 @@ LightSample InfiniteLights::sample(const Vec3f& from, const SpectrumValues& valu
     seen.pdf = chosen->share * drawn.light.pdf * solid_angle;
   }
   for (const Light& light : lights_) {
-    if (&light != chosen) add_seen(light, from, draw.direction, values, seen);
+    if (&light != chosen && light.is_drawn) add_seen(light, from, draw.direction, values, seen);
   }
   draw.radiance = seen.radiance;
   draw.pdf = seen.pdf;

@@ -25,7 +25,8 @@ namespace freepath {
 ///
 /// A light that is the same from everywhere is never drawn: a path that escapes finds it by itself,
 /// and no draw could choose better than a phase function or a material does. Nor is an image that
-/// varies little; of others, what is above the mean is drawn. A portal changes that.
+/// varies little; of others, what is above the mean is drawn. A portal changes that. Draws of the
+/// others are not asked what the undrawn show in their direction: that is left to escapes alone.
 class InfiniteLights {
  public:
   /// Lights of each kind; those that are black are left out.
@@ -41,12 +42,16 @@ class InfiniteLights {
   /// Whether there is something to draw.
   bool is_drawn() const { return is_drawn_; }
 
-  /// The radiance that an escaping ray sees, and the density of `sample` in its direction [1/sr],
-  /// to which lights that are not drawn add nothing.
+  /// What an escaping ray sees, and the density of `sample` in its direction [1/sr].
   LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
-  /// A draw of all lights together, of density 0 if there is nothing to draw.
+  /// A draw of all lights together that are drawn, of density 0 if there is none.
   LightSample sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
                      float u2) const;
+
+  /// The sun, if it alone is drawn: draws differ in the point of its disc then. Else null.
+  const Sun* only_sun() const;
+  /// Radiance of that sun in the channels.
+  SampledSpectrum only_radiance(const SpectrumValues& values) const;
 
  private:
   /// What shines the same from everywhere.
@@ -78,6 +83,8 @@ class InfiniteLights {
                        const SpectrumValues& values, LightSeen& all);
   /// Decides what of a light is drawn.
   void choose_draws(Light& light) const;
+  /// The one light that is drawn; null if there are several, or none.
+  const Light* only_drawn() const;
 
   std::vector<Light> lights_;
   bool is_drawn_ = false;

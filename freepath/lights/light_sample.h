@@ -16,8 +16,8 @@ struct LightSample {
   Vec3f direction{0, 0, 1};  ///< Unit vector from the point to the light [world].
   /// Distance to the light; infinite for one from outside of the scene.
   float distance = std::numeric_limits<float>::infinity();
-  /// Radiance from this direction, of all lights outside of the scene together; of a light without
-  /// extent the irradiance of a surface that faces it.
+  /// Radiance from this direction, of all lights outside of the scene together that are drawn; of a
+  /// light without extent the irradiance of a surface that faces it.
   SampledSpectrum radiance;
   /// Density of the direction, times the probability of choosing the light [1/sr]; of a light
   /// without extent that probability alone. With 0 the draw is to be dropped.
@@ -36,11 +36,15 @@ struct LightSample {
   bool delta = false;
 };
 
-/// What a ray sees of a light, and with which density SceneLights::sample would have drawn its
-/// direction at its start [1/sr].
+/// What a ray sees of lights.
 struct LightSeen {
-  SampledSpectrum radiance;
+  SampledSpectrum radiance;  ///< Of lights that are drawn: a draw finds it too.
+  /// Density with which SceneLights::sample would have drawn the ray's direction at its start
+  /// [1/sr].
   float pdf = 0;
+  SampledSpectrum undrawn = {};  ///< Radiance of lights that are never drawn: rays alone find it.
+
+  SampledSpectrum all() const { return radiance + undrawn; }
 };
 
 }  // namespace freepath

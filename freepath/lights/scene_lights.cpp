@@ -198,6 +198,20 @@ LightSample SceneLights::sample_distant(const SpectrumValues& values, float u) c
   return draw;
 }
 
+std::optional<SceneLights::OnlyLight> SceneLights::only_light() const {
+  if (distant_share_ == 1 && distant_.size() == 1) {
+    return OnlyLight{distant_[0].towards, distant_[0].distance, 1, nullptr};
+  }
+  const Sun* const sun = infinite_share_ == 1 ? infinite_.only_sun() : nullptr;
+  if (sun == nullptr) return std::nullopt;
+  return OnlyLight{sun->direction(), LightSample().distance, sun->pdf(), &sun->disc()};
+}
+
+SampledSpectrum SceneLights::only_radiance(const SpectrumValues& values) const {
+  if (distant_share_ == 1) return values[distant_[0].radiance] * distant_[0].scale;
+  return infinite_.only_radiance(values);
+}
+
 LightSample SceneLights::sample_within(const Vec3f& position, const SpectrumValues& values,
                                        float u0, float u1, float u2) const {
   const LightChoice choice = chooser_.choose(position, u2);

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "freepath/base/direction_disc.h"
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/geometry/surface_point.h"
@@ -73,6 +75,21 @@ class SceneLights {
   /// Whether there is a light to draw.
   bool is_drawn() const { return infinite_.is_drawn() || !distant_.empty() || !chooser_.is_dark(); }
 
+  /// A light that all draws are of, wherever they are made: their radiance and density are always
+  /// the same.
+  struct OnlyLight {
+    Vec3f towards;   ///< Direction towards its middle, unit [world].
+    float distance;  ///< LightSample::distance.
+    float pdf;       ///< LightSample::pdf.
+    const DirectionDisc*
+        disc;  ///< Directions of draws; null: all have the one, and no ray finds it.
+  };
+  /// That light; none if there are others to draw, or nothing.
+  std::optional<OnlyLight> only_light() const;
+  /// What draws of it find: LightSample::radiance.
+  SampledSpectrum only_radiance(const SpectrumValues& values) const;
+
+ private:
   /// Light from one direction.
   struct Distant {
     Vec3f towards;  ///< Direction towards it, unit [world].
@@ -81,13 +98,6 @@ class SceneLights {
     float share;     ///< Probability of drawing it among lights of this kind.
     float distance;  ///< LightSample::distance.
   };
-  /// The one light that all draws are of, wherever they are made: their direction and radiance are
-  /// always the same, their density 1. Null if there are others to draw, or none.
-  const Distant* only_light() const {
-    return distant_share_ == 1 && distant_.size() == 1 ? distant_.data() : nullptr;
-  }
-
- private:
   struct Emission {
     SpectrumId radiance;
     bool two_sided = false;

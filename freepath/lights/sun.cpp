@@ -1,6 +1,7 @@
 #include "freepath/lights/sun.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "freepath/base/error.h"
 #include "freepath/lights/atmosphere.h"
@@ -8,6 +9,8 @@
 namespace freepath {
 
 namespace {
+
+constexpr float kSineOfHalfRadius = 2.3256491e-3F;  // sin(0.2665° / 2)
 
 /// Of direct sunlight to the ground.
 Rgb transmittance(double elevation, double turbidity) {
@@ -35,7 +38,7 @@ Rgb direct_sun_irradiance(double elevation, double turbidity) {
 }
 
 Sun::Sun(const SunParameters& parameters, UpAxis up)
-    : direction_(sky_direction(parameters.elevation, parameters.azimuth, up)), frame_(direction_) {
+    : disc_(sky_direction(parameters.elevation, parameters.azimuth, up), kSineOfHalfRadius) {
   if (!(parameters.elevation >= -90 && parameters.elevation <= 90)) {
     fail("the sun's elevation is {} degrees; it must lie in [-90, 90]", parameters.elevation);
   }
@@ -51,7 +54,7 @@ Sun::Sun(const SunParameters& parameters, UpAxis up)
     fail("the sun's irradiance is {},{},{}; it must be finite and not negative", irradiance_.x,
          irradiance_.y, irradiance_.z);
   }
-  radiance_ = irradiance_ * (1.0F / solid_angle());
+  radiance_ = irradiance_ * pdf();
 }
 
 }  // namespace freepath

@@ -1,13 +1,11 @@
 #pragma once
 /// @file The sun: a disc of uniform radiance.
 
-#include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "freepath/base/direction_disc.h"
 #include "freepath/base/rgb.h"
-#include "freepath/base/tangent_frame.h"
-#include "freepath/base/turn.h"
 #include "freepath/base/up_axis.h"
 #include "freepath/base/vector.h"
 
@@ -49,42 +47,18 @@ class Sun {
   ///   is negative or not finite
   Sun(const SunParameters& parameters, UpAxis up);
 
+  /// Directions towards it [world].
+  const DirectionDisc& disc() const { return disc_; }
   /// Direction towards the centre [world].
-  const Vec3f& direction() const { return direction_; }
+  const Vec3f& direction() const { return disc_.middle(); }
   /// Radiance of the disc: irradiance / solid angle.
   const Rgb& radiance() const { return radiance_; }
   const Rgb& irradiance() const { return irradiance_; }
-  /// Density of `sample` in the disc [1/sr].
-  float pdf() const { return 1.0F / solid_angle(); }
-  /// Solid angle of the disc, 2π (1 - cosine of the radius) [sr].
-  static constexpr float solid_angle() { return std::numbers::pi_v<float> * largest_distance2(); }
-
-  /// Whether a direction points at the disc. Decided by the distance of two points of the sphere:
-  /// the cosine has no digits left for an angle as small as this.
-  bool contains(const Vec3f& towards) const {
-    return (towards - direction_).length2() <= largest_distance2();
-  }
-
-  /// A direction uniformly distributed in the disc, for which `contains` holds.
-  Vec3f sample(float u0, float u1) const {
-    const float drop = u0 * 0.5F * largest_distance2();  // 1 - cosine
-    const float sine = std::sqrt(drop * (2.0F - drop));
-    const SinCos azimuth = sincos_of_turn(u1);
-    const Vec3f towards = frame_.to_world(sine * azimuth.cosine, sine * azimuth.sine, 1.0F - drop);
-    if (contains(towards)) return towards;
-    // Rounding put a point of the edge outside, by some 1e-5 of the radius.
-    const Vec3f inside = direction_ + (towards - direction_) * 0.9999F;
-    return inside * (1.0F / std::sqrt(inside.length2()));
-  }
+  /// Density of a draw in the disc [1/sr].
+  float pdf() const { return 1.0F / disc_.solid_angle(); }
 
  private:
-  /// 2 (1 - cosine of the radius).
-  static constexpr float largest_distance2() { return 4 * kSineOfHalfRadius * kSineOfHalfRadius; }
-
-  static constexpr float kSineOfHalfRadius = 2.3256491e-3F;  // sin(0.2665° / 2)
-
-  Vec3f direction_;
-  TangentFrame frame_;  // around it
+  DirectionDisc disc_;
   Rgb irradiance_;
   Rgb radiance_;
 };

@@ -15,12 +15,15 @@ Vec3f vector_at(const std::array<ScatteringStream::Row<float>, 3>& rows, std::si
 
 /// Brightness of a light whose shadow rays don't play.
 constexpr float kNeverFaint = 1e30F;
+/// One of R, G, B.
+constexpr float kPerColor = 1.0F / 3;
 /// Where all are cast.
 constexpr ShadowRoulette kAllShadowRays;
 
 }  // namespace
 
-void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i) {
+void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i,
+                            float magnitude) {
   ScenePath& path = paths_[slot];
   const std::size_t component = flights_.component[i];
   if (jobs_.layers.on()) {
@@ -45,6 +48,11 @@ void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, s
   scatterings_.ray[n] = static_cast<uint32_t>(i);
   scatterings_.is_given[n] = scatterer_.is_given;
   scatterings_.g[n] = scatterer_.g;
+  scatterings_.magnitude[n] = magnitude;
+  scatterings_.lobe_scale[n] = magnitude * path.sun_share;
+  scatterings_.lobe_roulette[n] = path.is_branch ? setup_.roulette_threshold : 0.0F;
+  has_given_ = has_given_ || scatterer_.is_given != 0;
+  if (only_light_) take_only_light(n, path);
 }
 
 void PathWavefront::set_scatterer(const ScenePath& path, std::size_t component) {
@@ -63,33 +71,43 @@ Vec3f PathWavefront::position_of(const RayStream& rays, std::size_t i) const {
 
 bool PathWavefront::survives(ScenePath& path, float u) const {
   const float throughput = magnitude(path);
-  if (throughput == 0) return false;
   if (throughput >= setup_.roulette_threshold) return true;
-  const float survival = throughput / setup_.roulette_threshold;
-  if (u >= survival) return false;
-  path.throughput *= 1.0F / survival;
+  return goes_on(path, u, throughput / setup_.roulette_threshold);
+}
+
+bool PathWavefront::goes_on(ScenePath& path, float u, float survival) {
+  if (!(u < survival)) return false;
+  if (survival < 1) path.throughput *= 1.0F / survival;
   return true;
 }
 
 float PathWavefront::brightness(const ScenePath& path, const SampledSpectrum& radiance, bool in_rgb,
                                 float distance) const {
-  if (setup_.shadow_guide == nullptr || !ShadowGuide::plays(path.scatterings, distance)) {
-    return kNeverFaint;
-  }
+  if (!plays(path, distance)) return kNeverFaint;
   const float sum = sum_of(radiance);  // of those that are not in use 0
-  if (in_rgb) return sum * (1.0F / 3);
+  if (in_rgb) return sum * kPerColor;
   return sum * (path.channel < 0 ? path.colors->per_white : path.colors->mean_per_white);
 }
 
 void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
   Scattering& scattering = scattered_[i];
   scattering.in_rgb = sees_rgb(path);
-  const SampledSpectrum light = light_spectra(path, scattering.in_rgb)[only_light_->radiance];
-  const float brought = share_of_light(path, only_light_->towards, only_light_->distance);
-  scattering.radiance =
-      light_throughput(path, scattering.in_rgb) * light * (only_light_->scale * brought);
-  scatterings_.brightness[i] =
-      brightness(path, scattering.radiance, scattering.in_rgb, only_light_->distance);
+  scattering.brought = share_of_light(path, only_light_->towards, only_light_->distance);
+  // Most paths have no colour, and most shadow rays are not cast: what they bring can wait.
+  scatterings_.brightness[i] = scattering.in_rgb && plays(path, only_light_->distance)
+                                   ? path.throughput[0] * scattering.brought * only_brightness_
+                                   : brightness(path, from_only_light(path, scattering),
+                                                scattering.in_rgb, only_light_->distance);
+}
+
+SampledSpectrum PathWavefront::from_only_light(const ScenePath& path,
+                                               const Scattering& scattering) {
+  if (scattering.in_rgb) return only_in_rgb_ * (path.throughput[0] * scattering.brought);
+  if (path.colors != only_colors_) {
+    only_colors_ = path.colors;
+    only_in_colors_ = scene_.lights->only_radiance(path.colors->spectra);
+  }
+  return path.throughput * only_in_colors_ * scattering.brought;
 }
 
 void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
@@ -123,13 +141,15 @@ void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
 }
 
 void PathWavefront::set_only_light() {
-  only_light_ = meter_ == nullptr ? scene_.lights->only_light() : nullptr;
-  if (only_light_ == nullptr) return;
+  if (meter_ == nullptr) only_light_ = scene_.lights->only_light();
+  if (!only_light_) return;
+  only_in_rgb_ = scene_.lights->only_radiance(setup_.factory->rgb());
+  only_brightness_ = sum_of(only_in_rgb_) * kPerColor;
   for (int axis = 0; axis < 3; ++axis) {
     scatterings_.to_light[axis].fill(only_light_->towards[axis]);
   }
-  scatterings_.light_pdf.fill(1);
-  scatterings_.light_found.fill(0);
+  scatterings_.light_pdf.fill(only_light_->pdf);
+  scatterings_.light_found.fill(only_light_->disc == nullptr ? 0 : 1);
   for (Scattering& scattering : scattered_) scattering.end = {only_light_->distance, {}};
 }
 
@@ -139,10 +159,14 @@ void PathWavefront::cast_shadow(std::size_t i) {
   if (share == 0) return;
   const float survival = scatterings_.shadow_survival[i];
   if (survival < 1 && scatterings_.numbers[kShadowNumber][i] >= survival) return;
-  SampledSpectrum radiance = scattering.radiance * share;
-  if (survival < 1) radiance *= 1 / survival;
-  if (is_black(radiance)) return;
   const ScenePath& path = paths_[scattering.slot];
+  float counted = survival < 1 ? share / survival : share;
+  // What was drawn is of before the path's own roulette.
+  const float path_survival = scatterings_.survival[i];
+  if (!only_light_ && path_survival < 1) counted *= 1.0F / path_survival;
+  const SampledSpectrum radiance =
+      (only_light_ ? from_only_light(path, scattering) : scattering.radiance) * counted;
+  if (is_black(radiance)) return;
   const Vec3f position = vector_at(scatterings_.position, i);
   const Vec3f to_light = vector_at(scatterings_.to_light, i);
   if (scattering.bend) {
@@ -224,23 +248,23 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   if (scatterings_.count == 0) return;
   kernels_.gather(batch.rays, flights_, scatterings_);
   const bool draws_lights = meter_ == nullptr && scene_.lights->is_drawn();
-  const bool chooses_light = draws_lights && only_light_ == nullptr;
+  const bool chooses_light = draws_lights && !only_light_;
+  const DirectionDisc* const disc = only_light_ ? only_light_->disc : nullptr;
   const bool is_viewed = meter_ != nullptr && !meter_->views.empty();
   kernels_.draw_numbers(scatterings_, setup_.seed,
-                        chooses_light ? kScatteringBlocks : kBlocksWithoutLight);
+                        chooses_light || disc != nullptr ? kScatteringBlocks : kBlocksWithoutLight);
+  kernels_.play(scatterings_, setup_.roulette_threshold);
+  if (disc != nullptr) kernels_.aim(scatterings_, *disc);
   const MediumId medium = paths_[scattered_[0].slot].medium;  // of all rays of a walk
   const ShadowRoulette& shadows =
       setup_.shadow_guide != nullptr ? setup_.shadow_guide->roulette(medium) : kAllShadowRays;
-  // Branches are faint: their light is looked for before roulette, or most of it would be lost.
+  // Branches are faint: their light is looked for before they play, or most of it would be lost.
   const bool splits = shadows.lobe_scale > 0;
-  for (std::size_t i = 0; i < scatterings_.count; ++i) {
-    ScenePath& path = paths_[scattered_[i].slot];
-    path.is_dead = !path.is_branch && !survives(path, scatterings_.numbers[kRouletteNumber][i]);
-    if (path.is_dead || !draws_lights) continue;
-    scatterings_.lobe_scale[i] = magnitude(path) * path.sun_share;
-    scatterings_.lobe_roulette[i] = path.is_branch ? setup_.roulette_threshold : 0.0F;
-    chooses_light ? draw_light_of(i, path) : take_only_light(i, path);
-    if (scatterings_.is_given[i] != 0) {
+  if (chooses_light || (has_given_ && draws_lights)) {
+    for (std::size_t i = 0; i < scatterings_.count; ++i) {
+      if (!(scatterings_.numbers[kRouletteNumber][i] < scatterings_.survival[i])) continue;
+      if (chooses_light) draw_light_of(i, paths_[scattered_[i].slot]);
+      if (scatterings_.is_given[i] == 0) continue;
       scatterings_.light_value[i] = scattered_[i].phase->evaluate(
           vector_at(scatterings_.direction, i), vector_at(scatterings_.to_light, i));
     }
@@ -249,6 +273,8 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   const EmissionGuide* const guide = guide_of(medium);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
+    path.is_dead =
+        !goes_on(path, scatterings_.numbers[kRouletteNumber][i], scatterings_.survival[i]);
     if (path.is_dead) continue;
     if (is_viewed) show_collision(i);
     if (draws_lights) cast_shadow(i);
@@ -271,6 +297,7 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
   }
   send_scattered(*batch.walker);
   scatterings_.count = 0;
+  has_given_ = false;
 }
 
 void PathWavefront::draw_emission(std::size_t i, const EmissionGuide& guide) {

@@ -135,13 +135,14 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
     }
     path.throughput *= flights_.weight[0][i];
   }
-  if (!(magnitude(path) < kLargestThroughput)) {
+  const float largest = magnitude(path);
+  if (!(largest < kLargestThroughput)) {
     path.radiance = SampledSpectrum(std::numeric_limits<float>::quiet_NaN());  // finish() counts it
     path.is_dead = true;
     return;
   }
   if (flights_.event[i] == Event::kScatter) {
-    collide(slot, batch, i);
+    collide(slot, batch, i, largest);
     return;
   }
   take_ray(path, batch.rays, i);
@@ -172,7 +173,8 @@ void PathWavefront::escape(ScenePath& path) {
   const bool is_shared = path.pdf > 0 && path.glass == nullptr;
   const float share = is_shared ? path.pdf / (path.pdf + light.pdf) : 1.0F;
   const float brought = share_of_light(path, path.direction, kFromOutside);
-  const SampledSpectrum seen = light_throughput(path, in_rgb) * light.radiance * (share * brought);
+  const SampledSpectrum seen =
+      light_throughput(path, in_rgb) * (light.radiance * share + light.undrawn) * brought;
   if (jobs_.layers.on() && path.scatterings == 0) {
     jobs_.layers.background(path.result, rgb_of(path, in_rgb ? SampledSpectrum() : seen,
                                                 in_rgb ? seen : SampledSpectrum()));

@@ -145,6 +145,7 @@ class PathWavefront {
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
   /// A path's throughput in the channels of these spectra.
   static SampledSpectrum light_throughput(const ScenePath& path, bool in_rgb);
+  /// Adds what a path that ends sees outside of the scene.
   void escape(ScenePath& path);
   /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
   /// opaque one is never passed over, nor a light; ties_ are the others.
@@ -183,17 +184,25 @@ class PathWavefront {
   bool is_hole(const ScenePath& path, const SurfaceHit& hit, const Material& material) const;
   /// Puts a path that a medium scatters into the queue for it.
   /// @param i of its ray and its flight
-  void collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i);
+  /// @param magnitude of its throughput
+  void collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i, float magnitude);
   /// Finds out how a component of the medium that a path is in scatters.
   void set_scatterer(const ScenePath& path, std::size_t component);
   /// Position where a flight has ended [world, relative to the scene's origin].
   Vec3f position_of(const RayStream& rays, std::size_t i) const;
   /// Scatters those in the queue: draws lights for them and where they go on.
   void scatter_in_media(const WalkBatches::Batch& batch);
-  /// Writes what all draws of lights have in common, once and for all, if they are the same.
+  /// Writes what all draws of lights have in common, once and for all, if they are of one light.
   void set_only_light();
   /// Takes that light for a scattering in the queue.
   void take_only_light(std::size_t scattering, const ScenePath& path);
+  struct Scattering;
+  /// What that light brings by a scattering unshadowed, times the density of the draw.
+  SampledSpectrum from_only_light(const ScenePath& path, const Scattering& scattering);
+  /// Whether the shadow ray to a light at some distance plays Russian roulette.
+  bool plays(const ScenePath& path, float distance) const {
+    return setup_.shadow_guide != nullptr && ShadowGuide::plays(path.scatterings, distance);
+  }
   /// Draws the light for a scattering in the queue.
   void draw_light_of(std::size_t scattering, const ScenePath& path);
   /// Draws the light for a scattering inside of glass, through which it is seen.
@@ -269,6 +278,8 @@ class PathWavefront {
   /// @param u in (0, 1)
   /// @return false if the path has ended
   bool survives(ScenePath& path, float u) const;
+  /// The same by a probability that is known.
+  static bool goes_on(ScenePath& path, float u, float survival);
   /// Largest magnitude of a path's throughput; no number below infinity if a channel is none.
   float magnitude(const ScenePath& path) const {
     return meter_ != nullptr ? std::abs(path.throughput[0]) : largest_magnitude(path.throughput);
@@ -335,7 +346,9 @@ class PathWavefront {
     ShadowEnd end;  ///< End of the shadow ray.
     /// The glass that refracts it, if any does.
     std::optional<ShadowTracer::Bend> bend;
-    SampledSpectrum radiance;  ///< What the light brings unshadowed, times the density of the draw.
+    /// What the light brings unshadowed, times the density of the draw; see from_only_light().
+    SampledSpectrum radiance;
+    float brought = 1;  ///< share_of_light() of the only light.
   };
   /// How the component scatters that the scattering before was of.
   struct Scatterer {
@@ -345,9 +358,14 @@ class PathWavefront {
     uint32_t is_given = 0;  ///< ScatteringStream::is_given
   };
   Scatterer scatterer_;
-  const SceneLights::Distant* only_light_ = nullptr;  // SceneLights::only_light()
+  std::optional<SceneLights::OnlyLight> only_light_;
+  float only_brightness_ = 0;                   // of that light, see brightness()
+  SampledSpectrum only_in_rgb_;                 // LightSample::radiance of it
+  const SampleSpectra* only_colors_ = nullptr;  // whose radiance the next is
+  SampledSpectrum only_in_colors_;
   const ScatteringKernels& kernels_;
   ScatteringStream scatterings_;
+  bool has_given_ = false;  // whether ScatteringStream::is_given of one of them
   std::array<Scattering, ScatteringStream::kCapacity> scattered_;
   std::array<uint32_t, ScatteringStream::kCapacity> going_on_{};  // see send_scattered()
   std::size_t going_on_count_ = 0;

@@ -1,5 +1,7 @@
 #include "freepath/paths/shadow_guide.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,13 +33,40 @@ constexpr double kLeastPeak = 1.5;
 constexpr int kMoments = 64;
 
 /// Cells along the longest side of a medium, and shadow rays of each.
-constexpr int kCells = 24;
-constexpr uint32_t kRaysOfCell = 4;
+constexpr int kCells = 32;
+constexpr uint32_t kRaysOfCell = 16;
+/// Least root of a cell: rays that don't play are known by what they bring alone, which is huge.
+constexpr float kDarkest = 1e-3F;
 /// Streams that no path has.
 constexpr uint32_t kPositionStream = 0xFFFFFFFDU;
 constexpr uint32_t kWalkStream = 0xFFFFFFFCU;
 /// Media beyond these have no cells: their tables would take longer than they save.
 constexpr std::size_t kMostMedia = 4;
+
+/// Transmittances from a random point of each cell towards the dominant direction.
+/// @param number of the ray among those of its cell
+std::vector<float> transmittances_of_cells(const Walker& walker, const ShadowRoulette& cells,
+                                           uint32_t count, uint32_t number, uint64_t seed) {
+  RayStream rays;
+  rays.resize(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const Vec3i coord(static_cast<int>(i) % cells.counts.x,
+                      static_cast<int>(i) / cells.counts.x % cells.counts.y,
+                      static_cast<int>(i) / cells.counts.x / cells.counts.y);
+    RandomStream random(seed, i, number, kPositionStream);
+    const Vec3f within{random.uniform(), random.uniform(), random.uniform()};
+    set_ray(rays, i, cells.corner + (Vec3f(coord) + within) / cells.per_cell, cells.dominant,
+            std::numeric_limits<float>::infinity());
+    rays.pixel[i] = i;
+    rays.sample[i] = number;
+    rays.stream[i] = kWalkStream;
+  }
+  FlightStream flights;
+  WalkStatistics statistics;
+  walker.transmittance(rays, flights, statistics);
+  const std::vector<float>& weights = flights.weight[0];
+  return {weights.begin(), weights.begin() + count};
+}
 
 }  // namespace
 
@@ -125,35 +154,20 @@ ShadowRoulette ShadowGuide::tabulate(const PathScene& scene, const BoundMedium& 
     cells.per_cell[axis] = static_cast<float>(cells.counts[axis] / std::max(size[axis], edge));
   }
   const auto count = static_cast<uint32_t>(cells.counts.x * cells.counts.y * cells.counts.z);
-  RayStream rays;
-  rays.resize(std::size_t{count} * kRaysOfCell);
-  for (uint32_t i = 0; i < rays.size(); ++i) {
-    const uint32_t cell = i % count;
-    const Vec3i coord(static_cast<int>(cell) % cells.counts.x,
-                      static_cast<int>(cell) / cells.counts.x % cells.counts.y,
-                      static_cast<int>(cell) / cells.counts.x / cells.counts.y);
-    RandomStream random(seed, cell, i / count, kPositionStream);
-    const Vec3f within{random.uniform(), random.uniform(), random.uniform()};
-    set_ray(rays, i, cells.corner + (Vec3f(coord) + within) / cells.per_cell, *dominant_,
-            std::numeric_limits<float>::infinity());
-    rays.pixel[i] = cell;
-    rays.sample[i] = i / count;
-    rays.stream[i] = kWalkStream;
-  }
   // Of channels that differ, that which is let through best.
-  std::vector<float>& roots = roots_.emplace_back(count);
+  std::vector<float>& roots = roots_.emplace_back(count, kDarkest);
   const int channels = bound.channels.has_grey_extinction() ? 1 : bound.channels.count;
-  FlightStream flights;
-  WalkStatistics statistics;
   for (int channel = 0; channel < channels; ++channel) {
     const WalkSettings settings{.seed = seed, .origin = scene.origin};
     const Walker walker(*bound.medium, bound.channels.only(channel), settings);
-    walker.transmittance(rays, flights, statistics);
+    std::array<std::vector<float>, kRaysOfCell> transmittances;
+    tbb::parallel_for(0U, kRaysOfCell, [&](uint32_t n) {
+      transmittances[n] = transmittances_of_cells(walker, cells, count, n, seed);
+    });
     for (uint32_t cell = 0; cell < count; ++cell) {
       float sum = 0;
-      for (uint32_t n = 0; n < kRaysOfCell; ++n) sum += flights.weight[0][cell + n * count];
-      const float mean = std::max(sum, 0.0F) / kRaysOfCell;
-      roots[cell] = std::max(roots[cell], std::sqrt(mean));
+      for (const std::vector<float>& values : transmittances) sum += values[cell] * values[cell];
+      roots[cell] = std::max(roots[cell], std::sqrt(std::sqrt(sum / kRaysOfCell)));
     }
   }
   cells.roots = roots.data();

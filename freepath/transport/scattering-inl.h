@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "freepath/base/direction_disc.h"
 #include "freepath/media/phase/henyey_greenstein-inl.h"
 #include "freepath/tracking/random-inl.h"
 #include "freepath/tracking/streams.h"
@@ -76,6 +77,59 @@ HWY_INLINE VectorLanes vectors_at(const std::array<ScatteringStream::Row<float>,
           hn::Load(kFloat, &rows[2][i])};
 }
 
+/// The same vector in all lanes.
+HWY_INLINE VectorLanes set_vector(const Vec3f& v) { return {set(v.x), set(v.y), set(v.z)}; }
+
+HWY_INLINE VectorLanes difference_of(const VectorLanes& a, const VectorLanes& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+
+/// DirectionDisc::sample(), lane by lane.
+HWY_INLINE VectorLanes sample_disc(const DirectionDisc& disc, VecF u0, VecF u1) {
+  const VecF one = set(1.0F);
+  const VecF drop = hn::Mul(hn::Mul(u0, set(0.5F)), set(disc.largest_distance2));
+  const VecF reach = hn::Sqrt(hn::Mul(drop, hn::Sub(set(2.0F), drop)));
+  VecF sine;
+  VecF cosine;
+  sincos_of_turn_lanes(u1, sine, cosine);
+  const VectorLanes middle = set_vector(disc.middle());
+  const VectorLanes direction =
+      sum_of(sum_of(scaled(set_vector(disc.frame.tangent), hn::Mul(reach, cosine)),
+                    scaled(set_vector(disc.frame.bitangent), hn::Mul(reach, sine))),
+             scaled(middle, hn::Sub(one, drop)));
+  const VectorLanes off = difference_of(direction, middle);
+  const MaskF contained = hn::Le(squared_length(off), set(disc.largest_distance2));
+  if (hn::AllTrue(kFloat, contained)) return direction;
+  const VectorLanes inside = sum_of(middle, scaled(off, set(DirectionDisc::kInside)));
+  const VectorLanes unit = scaled(inside, hn::Div(one, hn::Sqrt(squared_length(inside))));
+  return {hn::IfThenElse(contained, direction.x, unit.x),
+          hn::IfThenElse(contained, direction.y, unit.y),
+          hn::IfThenElse(contained, direction.z, unit.z)};
+}
+
+inline void play_lanes(ScatteringStream& scatterings, float threshold) {
+  const VecF one = set(1.0F);
+  for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
+    const VecF magnitude = hn::Load(kFloat, &scatterings.magnitude[i]);
+    const MaskF is_branch =
+        hn::Gt(hn::Load(kFloat, &scatterings.lobe_roulette[i]), hn::Zero(kFloat));
+    const MaskF goes_on = hn::Or(is_branch, hn::Ge(magnitude, set(threshold)));
+    const VecF survival = hn::IfThenElse(goes_on, one, hn::Div(magnitude, set(threshold)));
+    hn::Store(survival, kFloat, &scatterings.survival[i]);
+  }
+}
+
+inline void aim_lanes(ScatteringStream& scatterings, const DirectionDisc& disc) {
+  for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
+    const VectorLanes to_light =
+        sample_disc(disc, hn::Load(kFloat, &scatterings.numbers[kLightNumber][i]),
+                    hn::Load(kFloat, &scatterings.numbers[kLightNumber + 1][i]));
+    hn::Store(to_light.x, kFloat, &scatterings.to_light[0][i]);
+    hn::Store(to_light.y, kFloat, &scatterings.to_light[1][i]);
+    hn::Store(to_light.z, kFloat, &scatterings.to_light[2][i]);
+  }
+}
+
 /// Number of the cell along an axis, a whole number.
 HWY_INLINE VecF cell_along(VecF position, float corner, float per_cell, int count) {
   const VecF at = hn::Mul(hn::Sub(position, set(corner)), set(per_cell));
@@ -125,9 +179,8 @@ HWY_INLINE LobeLanes lobe_lanes(const ShadowRoulette& roulette, VecF g, const Ve
   if (roulette.lobe_scale != 0) {
     // Two scatterings have the square of the mean cosine of one; of Henyey's and Greenstein's
     // function it is the function of that.
-    const VectorLanes dominant{set(roulette.dominant.x), set(roulette.dominant.y),
-                               set(roulette.dominant.z)};
-    const VecF turned = HenyeyGreensteinLanes(hn::Mul(g, g)).evaluate(before, dominant);
+    const VecF turned =
+        HenyeyGreensteinLanes(hn::Mul(g, g)).evaluate(before, set_vector(roulette.dominant));
     expected = hn::Mul(hn::Mul(throughput, set(roulette.lobe_scale)), turned);
   }
   const VecF worth = hn::Max(throughput, hn::Mul(expected, root));
@@ -145,9 +198,9 @@ HWY_INLINE LobeLanes lobe_lanes(const ShadowRoulette& roulette, VecF g, const Ve
 HWY_INLINE VecF survival_lanes(const ShadowRoulette& roulette, const DominantLanes& dominant,
                                VecF brightness) {
   const VecF one = set(1.0F);
-  const MaskF faint = hn::Lt(brightness, set(roulette.least));
-  if (hn::AllFalse(kFloat, faint)) return one;
   const VecF expected = hn::Mul(brightness, hn::IfThenElse(dominant.same, dominant.root, one));
+  const MaskF faint = hn::Lt(expected, set(roulette.least));
+  if (hn::AllFalse(kFloat, faint)) return one;
   const VecF wanted = hn::Div(expected, set(roulette.least));
   const VecF held = hn::Min(hn::Max(wanted, set(ShadowRoulette::kLeastSurvival)), one);
   return hn::IfThenElse(faint, held, one);
@@ -173,12 +226,14 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
     const VecF density = hn::IfThenElse(drawn, hn::Add(light_pdf, chance), set(1.0F));
     const VecF share = hn::IfThenElseZero(drawn, hn::Div(value, density));
     hn::Store(share, kFloat, &scatterings.light_share[i]);
-    const VecF brightness = hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share);
+    const VecF survival = hn::Load(kFloat, &scatterings.survival[i]);
+    const VecF brightness =
+        hn::Div(hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share), survival);
     hn::Store(survival_lanes(roulette, dominant, brightness), kFloat,
               &scatterings.shadow_survival[i]);
-    const LobeLanes lobe =
-        lobe_lanes(roulette, g, before, hn::Load(kFloat, &scatterings.lobe_scale[i]),
-                   hn::Load(kFloat, &scatterings.lobe_roulette[i]), dominant.root);
+    const LobeLanes lobe = lobe_lanes(
+        roulette, g, before, hn::Div(hn::Load(kFloat, &scatterings.lobe_scale[i]), survival),
+        hn::Load(kFloat, &scatterings.lobe_roulette[i]), dominant.root);
     hn::Store(lobe.survival, kFloat, &scatterings.lobe_survival[i]);
     hn::Store(lobe.chance, kFloat, &scatterings.lobe_chance[i]);
     VecF pdf;
@@ -193,7 +248,7 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
 }
 
 inline ScatteringKernels make_scattering_kernels() {
-  return {&gather_scatterings, &draw_scattering_numbers, &scatter_lanes};
+  return {&gather_scatterings, &draw_scattering_numbers, &play_lanes, &aim_lanes, &scatter_lanes};
 }
 
 }  // namespace freepath::HWY_NAMESPACE

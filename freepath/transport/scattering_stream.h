@@ -12,7 +12,7 @@ enum ScatteringNumber : uint32_t {
   kRouletteNumber = 0,
   kPhaseNumber = 1,   ///< Two.
   kShadowNumber = 3,  ///< Whether to cast a shadow ray.
-  kLightNumber = 4,   ///< Three; only where lights differ.
+  kLightNumber = 4,   ///< Three; only where draws of lights differ.
   kScatteringNumbers = 7,
 };
 /// Blocks of four random words that these take, with those of the light and without.
@@ -34,6 +34,10 @@ struct ScatteringStream {
   // Where their random numbers stand.
   Row<uint32_t> pixel{}, sample{}, stream{};
   std::array<Row<float>, kScatteringNumbers> numbers{};
+  Row<float> magnitude{};  ///< Largest magnitude of the path's throughput.
+  /// With what probability the path goes on, [0, 1], by Russian roulette: if the number that is
+  /// drawn for it is below. Its throughput is to be divided by that.
+  Row<float> survival{};
   Row<float> g{};                         ///< Mean cosine of the phase function.
   std::array<Row<float>, 3> position{};   ///< [world, relative to the scene's origin]
   std::array<Row<float>, 3> direction{};  ///< Direction of travel before [world].
@@ -41,8 +45,8 @@ struct ScatteringStream {
   std::array<Row<float>, 3> to_light{};  ///< Direction towards it [world].
   Row<float> light_pdf{};                ///< LightSample::pdf.
   Row<float> light_found{};  ///< 1 where paths find it by chance too, else 0: multiple importance.
-  /// What it would bring unshadowed if the phase function were 1 and no path found it; see
-  /// ShadowRoulette::least. Huge where its shadow ray does not play.
+  /// What it would bring unshadowed if the phase function were 1 and no path found it, before
+  /// roulette of the path; see ShadowRoulette::least. Huge where its shadow ray does not play.
   Row<float> brightness{};
   Row<uint32_t> is_given{};      ///< Not 0 where light_value is given: the function is not of `g`.
   Row<float> light_value{};      ///< Phase function towards it [1/sr].
@@ -51,7 +55,8 @@ struct ScatteringStream {
   std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
   Row<float> next_pdf{};             ///< Density of that direction [1/sr].
   // Of branches: LobeBranch.
-  Row<float> lobe_scale{};     ///< Largest magnitude of what is left of the throughput for a sun.
+  /// Largest magnitude of what is left of the throughput for a sun, before roulette of the path.
+  Row<float> lobe_scale{};
   Row<float> lobe_roulette{};  ///< Below what a branch plays Russian roulette; 0 for others.
   Row<float> lobe_survival{};  ///< With what probability a branch goes on, (0, 1].
   Row<float> lobe_chance{};    ///< With what probability a path that goes on splits.

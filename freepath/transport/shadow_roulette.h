@@ -16,14 +16,15 @@ struct ShadowRoulette {
   /// Directions whose cosine with the dominant one reaches this count as that.
   static constexpr float kSameDirection = 0.985F;
 
-  /// Brightness from which on every ray is cast: mean of the channels, in units of white. 0: all
-  /// are.
+  /// Brightness from which on every ray is cast: mean of the channels, in units of white, of what
+  /// it is expected to bring. 0: all are.
   float least = 0;
-  Vec3f dominant{0};             ///< Direction towards the light, unit [world].
-  Vec3f corner{0};               ///< Corner of the cells [world, relative to the scene's origin].
-  Vec3f per_cell{0};             ///< Cells in a unit of length [1/world].
-  Vec3i counts{0};               ///< Number of cells along each axis.
-  const float* roots = nullptr;  ///< Transmittances of cells, x fastest; null: none is known.
+  Vec3f dominant{0};  ///< Direction towards the light, unit [world].
+  Vec3f corner{0};    ///< Corner of the cells [world, relative to the scene's origin].
+  Vec3f per_cell{0};  ///< Cells in a unit of length [1/world].
+  Vec3i counts{0};    ///< Number of cells along each axis.
+  /// Roots of the transmittances of cells, x fastest, above 0; null: none is known.
+  const float* roots = nullptr;
   /// Factor of what a path is expected to bring of the dominant light (LobeBranch), over what an
   /// isotropic scattering of all light does: this times its throughput, the density with which two
   /// scatterings would turn it into the dominant direction, and the cell's value. Up to 1 it is the
@@ -43,7 +44,6 @@ struct ShadowRoulette {
   /// @param direction towards the light
   /// @param brightness of what it would bring unshadowed
   float survival(const Vec3f& position, const Vec3f& direction, float brightness) const {
-    if (!(brightness < least)) return 1;
     float expected = brightness;
     if (roots != nullptr && direction.dot(dominant) >= kSameDirection) {
       int cell = 0;
@@ -54,7 +54,8 @@ struct ShadowRoulette {
       }
       expected *= roots[cell];
     }
-    return std::min(std::max(expected / least, kLeastSurvival), 1.0F);
+    if (!(expected < least)) return 1;
+    return std::max(expected / least, kLeastSurvival);
   }
 };
 

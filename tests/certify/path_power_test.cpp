@@ -98,10 +98,10 @@ FilmMean surface_furnace(uint32_t samples, uint64_t seed) {
       samples, seed);
 }
 
-/// Fog under a sky that is drawn, with shadow rays by roulette, and another that is found by
+/// Fog under a sky that is drawn, with shadow rays by roulette, and others that are found by
 /// chance.
 FilmMean sky_furnace(uint32_t samples, uint64_t seed) {
-  static const TwoSkies kSkies;
+  static const WhiteSkies kSkies;
   const std::string fog =
       R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 2 2 2 ] )"
       R"("rgb sigma_a" [ 0 0 0 ])"
@@ -160,6 +160,26 @@ FilmMean lit_layer(uint32_t samples, uint64_t seed) {
   return {found.mean / kExpected, found.error / kExpected};
 }
 
+/// A layer under the disc of a sun, over what quadrature says of its middle.
+FilmMean sun_layer(uint32_t samples, uint64_t seed) {
+  const Sun sun({.elevation = 37, .irradiance = Rgb(1.0F)}, UpAxis::kZ);
+  const LitLayer layer{0, 2, 0.8, Vec3d(sun.direction())};
+  static const double kExpected = layer.once() + layer.twice();
+  Component fog;
+  fog.density = make_field(Vec3i(-60, -60, 0), Vec3i(59, 59, 0), [](const Vec3i&) { return 1.0F; });
+  fog.sigma_s = Rgb(static_cast<float>(layer.sigma_s));
+  fog.phase = PhaseFunction::henyey_greenstein(static_cast<float>(layer.g));
+  const std::vector<CameraRay> rays(64, CameraRay{Vec3d(0, 0, -3), Vec3f(0, 0, 1)});
+  RenderSettings settings;
+  settings.samples = samples;
+  settings.walk.seed = seed;
+  settings.walk.interpolation = Interpolation::kNearest;
+  settings.max_scatterings = 2;
+  const FilmMean found = mean_of(
+      render(Medium({fog}), Camera::of_rays(rays, 8, 8), {{}, sun}, settings).film.to_image());
+  return {found.mean / kExpected, found.error / kExpected};
+}
+
 struct Case {
   const char* name;
   Furnace furnace;
@@ -197,6 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"SceneRoulette", core_furnace, &Planted::roulette},
                       Case{"ShadowRoulette", sky_furnace, &Planted::shadow_roulette},
                       Case{"SceneLightShare", core_furnace, &Planted::light_share},
+                      Case{"SunLightShare", sun_layer, &Planted::light_share},
                       Case{"SurfaceLightShare", surface_furnace, &Planted::surface_share},
                       Case{"LobeBranches", lit_layer, &Planted::branch},
                       Case{"NearLightLines", near_light, &Planted::near_line},

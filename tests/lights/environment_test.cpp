@@ -130,9 +130,10 @@ TEST(Sun, RadianceTimesSolidAngleIsItsIrradiance) {
   const Sun sun({.elevation = 20, .azimuth = 80, .irradiance = Rgb(3, 2, 1)}, UpAxis::kZ);
   // The solid angle of a cone, in a form that doesn't cancel.
   const double sine = std::sin(0.5 * 0.2665 * std::numbers::pi / 180);
-  EXPECT_NEAR(Sun::solid_angle(), 4 * std::numbers::pi * sine * sine, 1e-6 * Sun::solid_angle());
-  EXPECT_NEAR(sun.radiance().x * Sun::solid_angle(), 3, 1e-5);
-  EXPECT_NEAR(sun.radiance().z * Sun::solid_angle(), 1, 1e-5);
+  EXPECT_NEAR(sun.disc().solid_angle(), 4 * std::numbers::pi * sine * sine,
+              1e-6 * sun.disc().solid_angle());
+  EXPECT_NEAR(sun.radiance().x * sun.disc().solid_angle(), 3, 1e-5);
+  EXPECT_NEAR(sun.radiance().z * sun.disc().solid_angle(), 1, 1e-5);
 }
 
 TEST(Sun, TheDiscThatRaysSeeHasTheSampledSolidAngle) {
@@ -148,7 +149,7 @@ TEST(Sun, TheDiscThatRaysSeeHasTheSampledSolidAngle) {
     const double x = (2 * random.uniform() - 1) * 1.1 * radius;
     const double y = (2 * random.uniform() - 1) * 1.1 * radius;
     const Vec3f d = frame.to_world(static_cast<float>(x), static_cast<float>(y), 1).normalized();
-    inside += sun.contains(d) ? 1 : 0;
+    inside += sun.disc().contains(d) ? 1 : 0;
   }
   const double expected = std::numbers::pi / (2.2 * 2.2);
   const double error = std::sqrt(expected * (1 - expected) / kSamples);
@@ -163,7 +164,7 @@ TEST(Sun, EverySampledDirectionLiesInTheDisc) {
       for (int i = 0; i < 1000; ++i) {
         const float u1 = static_cast<float>(i) / 1000;
         for (const float u0 : {0.0F, 0.5F, 1.0F - 0x1p-24F}) {
-          ASSERT_TRUE(sun.contains(sun.sample(u0, u1)));
+          ASSERT_TRUE(sun.disc().contains(sun.disc().sample(u0, u1)));
         }
       }
     }

@@ -73,7 +73,7 @@ TEST(Photometry, SpectraAreNormalisedToALuminanceOfOneButRgbIsNot) {
 TEST(Photometry, ARadianceOfRgbIsSeenAsThatRgb) {
   const SceneLights lights = one(ConstantInfiniteLight{.radiance = spectra().red, .scale = 3});
   const SpectrumValues values = spectra().table.in_rgb();
-  const Vec3f rgb = values.to_rgb(lights.escape({0, 0, 0}, {0, 0, 1}, values).radiance);
+  const Vec3f rgb = values.to_rgb(lights.escape({0, 0, 0}, {0, 0, 1}, values).all());
   EXPECT_LE((rgb - Vec3f(6, 1.5F, 0.75F)).length(), 2e-3F);
 }
 
@@ -180,7 +180,7 @@ TEST(Photometry, IlluminanceIsThatOfASurface) {
       for (int column = 0; column < kSize; ++column) {
         const Vec3f d = direction_from_octahedral({(column + 0.5F) / kSize, (row + 0.5F) / kSize});
         sum += std::max(0.0F, d.dot(up)) *
-               luminance_of_channels(lights.escape({0, 0, 0}, d, values).radiance, values);
+               luminance_of_channels(lights.escape({0, 0, 0}, d, values).all(), values);
       }
     }
     return sum * 4 * std::numbers::pi / (kSize * kSize);

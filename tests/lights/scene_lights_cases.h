@@ -74,6 +74,7 @@ inline LightSeen trace(const LightsCase& scene, const SceneLights& lights, const
     if (!point) continue;
     const LightSeen seen = lights.hit(from, i, *point, values);
     all.radiance += seen.radiance;
+    all.undrawn += seen.undrawn;
     all.pdf += seen.pdf;
   }
   return all;

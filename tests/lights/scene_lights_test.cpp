@@ -99,7 +99,9 @@ void for_directions(int size, const Function& f) {
   }
 }
 
-bool in_sun(const LightsCase& scene, const Vec3f& d) { return scene.sun && scene.sun->contains(d); }
+bool in_sun(const LightsCase& scene, const Vec3f& d) {
+  return scene.sun && scene.sun->disc().contains(d);
+}
 
 TEST(SceneLights, ADrawHasTheDensityAndRadianceThatItsRayFinds) {
   const SpectrumTable& table = spectra().table;
@@ -151,7 +153,7 @@ TEST(SceneLights, DrawsFollowTheDensityThatRaysFind) {
           kSamples * solid_angle * trace(scene, lights, kPosition, d, values).pdf;
     });
     if (scene.sun) {
-      expected.back() = kSamples * Sun::solid_angle() *
+      expected.back() = kSamples * scene.sun->disc().solid_angle() *
                         trace(scene, lights, kPosition, scene.sun->direction(), values).pdf;
     }
     RandomStream random(11, 12, 13, 14);
@@ -190,11 +192,12 @@ TEST(SceneLights, DrawsAndEscapesTogetherEstimateTheIntegralOfWhatRaysSee) {
     double expected = 0;
     for_directions(1000, [&](const Vec3f& d, double solid_angle) {
       if (in_sun(scene, d)) return;
-      expected += f(d) * solid_angle * trace(scene, lights, kPosition, d, values).radiance[1];
+      expected += f(d) * solid_angle * trace(scene, lights, kPosition, d, values).all()[1];
     });
     if (scene.sun) {
       const Vec3f& d = scene.sun->direction();
-      expected += f(d) * Sun::solid_angle() * lights.escape(kPosition, d, values).radiance[1];
+      expected +=
+          f(d) * scene.sun->disc().solid_angle() * lights.escape(kPosition, d, values).all()[1];
     }
     if (scene.deltas) {
       for (const SeenDelta& delta : scene.deltas(kPosition)) {
@@ -210,7 +213,7 @@ TEST(SceneLights, DrawsAndEscapesTogetherEstimateTheIntegralOfWhatRaysSee) {
       const float u0 = random.uniform();
       const Vec3f found = sample_sphere(u0, random.uniform());
       const auto find = [&](const LightSeen& seen) {
-        sum += f(found) * seen.radiance[1] / (seen.pdf + kByItself);
+        sum += f(found) * (seen.radiance[1] / (seen.pdf + kByItself) + seen.undrawn[1] / kByItself);
       };
       find(lights.escape(kPosition, found, values));
       for (uint32_t light = 0; light < scene.emitters.size(); ++light) {
@@ -268,7 +271,7 @@ TEST(SceneLights, SeesNothingFromBehindAPortal) {
   const Vec3f behind(0, 0, 10);
   EXPECT_EQ(lights.sample(behind, values, 0.5F, 0.5F, 0.5F).pdf, 0);
   for (const Vec3f& d : {Vec3f(0, 0, 1), Vec3f(0, 0, -1)}) {
-    EXPECT_TRUE(is_black(lights.escape(behind, d, values).radiance));
+    EXPECT_TRUE(is_black(lights.escape(behind, d, values).all()));
   }
 }
 
@@ -318,7 +321,8 @@ TEST(SceneLights, DrawsNoLightThatIsTheSameFromEverywhere) {
   EXPECT_FALSE(alone.is_drawn());
   EXPECT_EQ(alone.sample(kPosition, values, 0.5F, 0.5F, 0.5F).pdf, 0);
   EXPECT_EQ(alone.escape(kPosition, {0, 0, 1}, values).pdf, 0);
-  EXPECT_FALSE(is_black(alone.escape(kPosition, {0, 0, 1}, values).radiance));
+  EXPECT_TRUE(is_black(alone.escape(kPosition, {0, 0, 1}, values).radiance));
+  EXPECT_FALSE(is_black(alone.escape(kPosition, {0, 0, 1}, values).undrawn));
   sky.lights.emplace_back(DistantLight{.radiance = spectra().grey});
   const SceneLights with_sun(sky, spectra().table);
   for (const float u : {0.0F, 0.3F, 0.999F}) {
@@ -326,6 +330,35 @@ TEST(SceneLights, DrawsNoLightThatIsTheSameFromEverywhere) {
     EXPECT_TRUE(draw.delta);
     EXPECT_EQ(draw.pdf, 1);
   }
+}
+
+TEST(SceneLights, DrawsOfTheSunAloneHaveOneRadianceAndOneDensity) {
+  const Sun sun({.elevation = 30, .irradiance = Rgb(4, 3, 2)}, UpAxis::kY);
+  SceneLightsDescription description;
+  // The sky is not drawn beside it.
+  description.lights = {SunLight{.sun = sun}, ConstantInfiniteLight{.radiance = spectra().warm}};
+  const SceneLights lights(description, spectra().table);
+  const auto only = lights.only_light();
+  ASSERT_TRUE(only);
+  ASSERT_NE(only->disc, nullptr);
+  const SpectrumValues in_rgb = spectra().table.in_rgb();
+  const SpectrumValues spectral =
+      spectra().table.at(sample_wavelengths<kMaxChannels>(0.37, WavelengthDensity::kVisible));
+  RandomStream random(1, 2, 3, 4);
+  for (int i = 0; i < 100; ++i) {
+    const float u0 = random.uniform();
+    const float u1 = random.uniform();
+    for (const SpectrumValues* values : {&in_rgb, &spectral}) {
+      const LightSample draw = lights.sample(kPosition, *values, u0, u1, random.uniform());
+      EXPECT_EQ(draw.direction, only->disc->sample(u0, u1));
+      EXPECT_EQ(draw.radiance, lights.only_radiance(*values));
+      EXPECT_FLOAT_EQ(draw.pdf, only->pdf);
+      EXPECT_EQ(draw.distance, only->distance);
+      EXPECT_FALSE(draw.delta);
+    }
+  }
+  description.lights.emplace_back(PointLight{.intensity = spectra().warm});
+  EXPECT_FALSE(SceneLights(description, spectra().table).only_light());
 }
 
 TEST(SceneLights, KnowsWhenThereIsNoLight) {
@@ -339,7 +372,7 @@ TEST(SceneLights, KnowsWhenThereIsNoLight) {
   const SceneLights lights(black, spectra().table);
   EXPECT_FALSE(lights.is_drawn());
   EXPECT_EQ(lights.sample(kPosition, values, 0.5F, 0.5F, 0.5F).pdf, 0);
-  EXPECT_TRUE(is_black(lights.escape(kPosition, {0, 0, 1}, values).radiance));
+  EXPECT_TRUE(is_black(lights.escape(kPosition, {0, 0, 1}, values).all()));
   SceneLightsDescription lit;
   lit.lights = {PointLight{.intensity = spectra().warm}};
   EXPECT_TRUE(SceneLights(lit, spectra().table).is_drawn());

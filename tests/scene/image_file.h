@@ -33,12 +33,14 @@ class ImageFile {
   TemporaryFile file_;
 };
 
-/// Two skies that add up to 1 everywhere: a cap of a fifth of all directions, and the rest.
-class TwoSkies {
+/// Skies that add up to 1 everywhere: half a cap of a fifth of all directions, which is drawn, half
+/// the rest, and a half that is the same from everywhere, which are found by chance.
+class WhiteSkies {
  public:
   std::string lights() const {
-    return R"(LightSource "infinite" )" + cap_.parameter() + "\n" + R"(LightSource "infinite" )" +
-           rest_.parameter() + "\n";
+    const std::string half = R"(LightSource "infinite" "float scale" 0.5 )";
+    return half + cap_.parameter() + "\n" + half + rest_.parameter() + "\n" + half +
+           "\"rgb L\" [ 1 1 1 ]\n";
   }
 
  private:

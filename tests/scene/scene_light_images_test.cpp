@@ -31,10 +31,10 @@ TEST(SceneLightImage, OfTheSkyIsTurnedWithIt) {
   expect("z is up", "", 2 * std::numbers::pi);
 }
 
-// Of two skies that add up to white one is drawn, by what is above its mean, and the other is found
-// by chance; shadow rays towards the one are cast by roulette.
-TEST(SceneLightImage, TwoThatAddUpToWhiteMakeAFurnace) {
-  const TwoSkies skies;
+// Of skies that add up to white one is drawn, by what is above its mean, and others, which shine
+// from its directions too, are found by chance; shadow rays towards the one are cast by roulette.
+TEST(SceneLightImage, SkiesThatAddUpToWhiteMakeAFurnace) {
+  const WhiteSkies skies;
   const std::string fog =
       R"(MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [ 2 3 1 ] )"
       R"("rgb sigma_a" [ 0 0 0 ] "float g" 0.4)"

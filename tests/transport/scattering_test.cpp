@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "freepath/base/direction_disc.h"
 #include "freepath/base/distributions.h"
 #include "freepath/base/random.h"
 #include "freepath/base/turn.h"
@@ -22,6 +23,7 @@ namespace {
 
 constexpr float kCosines[] = {0, 0.85F, -0.4F, 0.999F, 1e-4F, -0.97F, 0.3F};
 constexpr uint64_t kSeed = 0x123456789ABCDEFU;
+constexpr float kThreshold = 0.25F;  // of paths' roulette
 
 /// Scatterings of any kind, in full or but for some at the end.
 ScatteringStream make_scatterings(uint32_t first, std::size_t count) {
@@ -46,6 +48,8 @@ ScatteringStream make_scatterings(uint32_t first, std::size_t count) {
     scatterings.brightness[i] = i % 7 == 0 ? 1e30F : 2 * random.uniform();
     scatterings.is_given[i] = i % 11 == 0 ? 1 : 0;
     scatterings.light_value[i] = i % 11 == 0 ? random.uniform() : -1;
+    scatterings.magnitude[i] = i % 2 == 0 ? 0.2F * random.uniform() : 3 * random.uniform();
+    scatterings.lobe_roulette[i] = i % 9 == 0 ? kThreshold : 0;
   }
   return scatterings;
 }
@@ -75,6 +79,8 @@ void expect_scalar(const ScatteringStream& lanes, const ScatteringStream& before
                    const ShadowRoulette& roulette, std::size_t i) {
   RandomStream random(kSeed, lanes.pixel[i], lanes.sample[i], lanes.stream[i]);
   for (const auto& numbers : lanes.numbers) ASSERT_EQ(numbers[i], random.uniform());
+  const bool plays = lanes.lobe_roulette[i] == 0 && lanes.magnitude[i] < kThreshold;
+  ASSERT_EQ(lanes.survival[i], plays ? lanes.magnitude[i] / kThreshold : 1);
   const HenyeyGreenstein phase(lanes.g[i]);
   const Vec3f before = vector_at(lanes.direction, i);
   const Vec3f light = vector_at(lanes.to_light, i);
@@ -85,7 +91,8 @@ void expect_scalar(const ScatteringStream& lanes, const ScatteringStream& before
   const float share = pdf > 0 ? value / (pdf + lanes.light_found[i] * value) : 0;
   ASSERT_EQ(lanes.light_share[i], share);
   ASSERT_EQ(lanes.shadow_survival[i],
-            roulette.survival(vector_at(lanes.position, i), light, lanes.brightness[i] * share));
+            roulette.survival(vector_at(lanes.position, i), light,
+                              lanes.brightness[i] * share / lanes.survival[i]));
   const PhaseSample next =
       phase.sample(before, lanes.numbers[kPhaseNumber][i], lanes.numbers[kPhaseNumber + 1][i]);
   ASSERT_EQ(lanes.next_pdf[i], next.pdf);
@@ -105,6 +112,7 @@ TEST(Scattering, LanesOfEveryTargetDoAsTheScalarClasses) {
       ScatteringStream scatterings =
           make_scatterings(round * 100000, ScatteringStream::kCapacity - round % 3 * 5);
       lanes.draw_numbers(scatterings, kSeed, kScatteringBlocks);
+      lanes.play(scatterings, kThreshold);
       const ScatteringStream before = scatterings;
       const ShadowRoulette& roulette = roulettes[round % 3];
       lanes.scatter(scatterings, roulette);
@@ -116,13 +124,41 @@ TEST(Scattering, LanesOfEveryTargetDoAsTheScalarClasses) {
   }
 }
 
+TEST(Scattering, LanesOfEveryTargetDrawPointsOfADiscAsItDoes) {
+  // Points of the edge, which rounding puts outside or not.
+  const DirectionDisc discs[] = {{Vec3f(0, 0.6F, 0.8F), 2.3256491e-3F},
+                                 {Vec3f(-0.6F, 0, -0.8F), 2.3256491e-3F},
+                                 {Vec3f(0, 1, 0), 0.02F}};
+  for (const Simd simd : available_simd()) {
+    SCOPED_TRACE(std::string(to_string(simd)));
+    const ScatteringKernels& lanes = kernels(simd).scattering;
+    for (const DirectionDisc& disc : discs) {
+      ScatteringStream scatterings = make_scatterings(7, ScatteringStream::kCapacity - 5);
+      lanes.draw_numbers(scatterings, kSeed, kScatteringBlocks);
+      for (std::size_t i = 0; i < scatterings.count; i += 2) {
+        scatterings.numbers[kLightNumber][i] = kOneMinusEpsilon;
+      }
+      lanes.aim(scatterings, disc);
+      for (std::size_t i = 0; i < scatterings.count; ++i) {
+        const Vec3f expected = disc.sample(scatterings.numbers[kLightNumber][i],
+                                           scatterings.numbers[kLightNumber + 1][i]);
+        ASSERT_EQ(vector_at(scatterings.to_light, i), expected) << i;
+        ASSERT_TRUE(disc.contains(expected)) << i;
+      }
+    }
+  }
+}
+
 TEST(ShadowRoulette, CastsFaintRaysByWhatTheyAreExpectedToBring) {
   const Cells cells(0.5F);
   const ShadowRoulette& roulette = cells.roulette;
   // In the cell (2, 1, 0).
   const Vec3f position(1.5F, 0.6F, -0.9F);
   const float root = cells.roots[2 + 3 * 1];
-  EXPECT_EQ(roulette.survival(position, roulette.dominant, 0.5F), 1);
+  EXPECT_EQ(roulette.survival(position, roulette.dominant, 0.5F / root * 1.01F), 1);
+  EXPECT_FLOAT_EQ(roulette.survival(position, roulette.dominant, 0.5F),
+                  std::max(root, ShadowRoulette::kLeastSurvival));
+  EXPECT_EQ(roulette.survival(position, -roulette.dominant, 0.5F), 1);
   EXPECT_FLOAT_EQ(roulette.survival(position, roulette.dominant, 0.4F),
                   std::max(0.8F * root, ShadowRoulette::kLeastSurvival));
   EXPECT_FLOAT_EQ(roulette.survival(position, -roulette.dominant, 0.4F), 0.8F);
