@@ -64,6 +64,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   records_spectra_ = film.buckets().count > 0;
   window_ = film.window();
   active_ = next_path_ = paths_of_newest_ = 0;
+  only_colors_ = nullptr;                                // the setup may have others since
   std::iota(slots_.begin(), slots_.end(), uint32_t{0});  // in order, as memory likes to be read
   sent_.clear();
   sent_in_vacuum_.clear();
