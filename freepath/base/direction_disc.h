@@ -21,7 +21,7 @@ struct DirectionDisc {
   /// radius).
   float largest_distance2;
 
-  /// @param sine_of_half of half the radius as an angle, 1e-3 to 1e-1: of smaller discs rounding
+  /// @param sine_of_half sine of half the angular radius, 1e-3 to 1e-1: of smaller discs rounding
   ///   leaves too little
   DirectionDisc(const Vec3f& middle, float sine_of_half)
       : frame(middle), largest_distance2(4 * sine_of_half * sine_of_half) {}

@@ -50,7 +50,7 @@ class InfiniteLights {
 
   /// The sun, if it alone is drawn: draws differ in the point of its disc then. Else null.
   const Sun* only_sun() const;
-  /// Radiance of that sun in the channels.
+  /// Radiance of that sun in the channels. Only where only_sun() is not null.
   SampledSpectrum only_radiance(const SpectrumValues& values) const;
 
  private:

@@ -84,9 +84,9 @@ class SceneLights {
     const DirectionDisc*
         disc;  ///< Directions of draws; null: all have the one, and no ray finds it.
   };
-  /// That light; none if there are others to draw, or nothing.
+  /// The light that all draws are of; none if there are others to draw, or nothing.
   std::optional<OnlyLight> only_light() const;
-  /// What draws of it find: LightSample::radiance.
+  /// Radiance of that light, LightSample::radiance. Only where only_light() has a value.
   SampledSpectrum only_radiance(const SpectrumValues& values) const;
 
  private:

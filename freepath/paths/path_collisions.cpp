@@ -15,7 +15,7 @@ Vec3f vector_at(const std::array<ScatteringStream::Row<float>, 3>& rows, std::si
 
 /// Brightness of a light whose shadow rays don't play.
 constexpr float kNeverFaint = 1e30F;
-/// One of R, G, B.
+/// Weight of each of R, G, B in their mean.
 constexpr float kPerColor = 1.0F / 3;
 /// Where all are cast.
 constexpr ShadowRoulette kAllShadowRays;
@@ -71,7 +71,7 @@ Vec3f PathWavefront::position_of(const RayStream& rays, std::size_t i) const {
 
 bool PathWavefront::survives(ScenePath& path, float u) const {
   const float throughput = magnitude(path);
-  if (throughput >= setup_.roulette_threshold) return true;
+  if (throughput > 0 && throughput >= setup_.roulette_threshold) return true;
   return goes_on(path, u, throughput / setup_.roulette_threshold);
 }
 
@@ -89,25 +89,30 @@ float PathWavefront::brightness(const ScenePath& path, const SampledSpectrum& ra
   return sum * (path.channel < 0 ? path.colors->per_white : path.colors->mean_per_white);
 }
 
-void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
-  Scattering& scattering = scattered_[i];
-  scattering.in_rgb = sees_rgb(path);
-  scattering.brought = share_of_light(path, only_light_->towards, only_light_->distance);
-  // Most paths have no colour, and most shadow rays are not cast: what they bring can wait.
-  scatterings_.brightness[i] = scattering.in_rgb && plays(path, only_light_->distance)
-                                   ? path.throughput[0] * scattering.brought * only_brightness_
-                                   : brightness(path, from_only_light(path, scattering),
-                                                scattering.in_rgb, only_light_->distance);
-}
-
-SampledSpectrum PathWavefront::from_only_light(const ScenePath& path,
-                                               const Scattering& scattering) {
+inline SampledSpectrum PathWavefront::from_only_light(const ScenePath& path,
+                                                      const Scattering& scattering) {
   if (scattering.in_rgb) return only_in_rgb_ * (path.throughput[0] * scattering.brought);
   if (path.colors != only_colors_) {
     only_colors_ = path.colors;
     only_in_colors_ = scene_.lights->only_radiance(path.colors->spectra);
   }
   return path.throughput * only_in_colors_ * scattering.brought;
+}
+
+void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
+  Scattering& scattering = scattered_[i];
+  scattering.in_rgb = sees_rgb(path);
+  scattering.brought = share_of_light(path, only_light_->towards, only_light_->distance);
+  // Most paths have no colour, and most shadow rays are not cast: what they bring can wait.
+  float& brightness_there = scatterings_.brightness[i];
+  if (!plays(path, only_light_->distance)) {
+    brightness_there = kNeverFaint;
+  } else if (scattering.in_rgb) {
+    brightness_there = path.throughput[0] * scattering.brought * only_brightness_;
+  } else {
+    brightness_there =
+        brightness(path, from_only_light(path, scattering), false, only_light_->distance);
+  }
 }
 
 void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {

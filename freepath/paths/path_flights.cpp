@@ -121,6 +121,7 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
   path.lookups += flights_.lookups[i];
   if (batch.rays.weighted()) {
     const int channels = batch.walker->channels();
+    path.may_differ = true;
     for (int c = 0; c < channels; ++c) {
       if (!path.is_branch) path.radiance[c] += flights_.emitted[c][i] * path.emission_share;
       path.throughput[c] = flights_.weight[c][i];

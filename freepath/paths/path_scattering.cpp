@@ -9,7 +9,8 @@
 namespace freepath {
 
 bool PathWavefront::sees_rgb(const ScenePath& path) const {
-  if (!setup_.factory->sees_rgb() || path.is_coloured || records_spectra_) return false;
+  if (!may_see_rgb_ || path.is_coloured) return false;
+  if (!path.may_differ) return true;
   const SampledSpectrum& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
     if (c[i] != c[0]) return false;
@@ -263,6 +264,7 @@ void PathWavefront::scatter_at_surface(std::size_t slot, const SurfaceHit& hit) 
     return;
   }
   path.throughput *= next->weight;
+  path.may_differ = true;
   if (is_black(path.throughput)) {  // no channel of the surface has what was left of the path's
     path.is_dead = true;
     return;

@@ -37,6 +37,8 @@ struct alignas(64) ScenePath {
   uint8_t hero : 4 = 0;  ///< The channel that decides where channels part.
   bool only_hero : 1 = false;
   bool is_coloured : 1 = false;  ///< It has met something that may tell wavelengths apart.
+  /// The channels of its throughput may differ. Where they don't, most is known by the first.
+  bool may_differ : 1 = false;
   bool is_branch : 1 = false;
   bool surfaces_known = false;
   bool ends_at_surface = false;  ///< Once that is known.

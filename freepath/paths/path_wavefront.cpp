@@ -62,6 +62,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   const StopScope scope(jobs.stop);
   jobs_.begin(film, setup_.factory->paths_per_sample(), meter_ != nullptr);
   records_spectra_ = film.buckets().count > 0;
+  may_see_rgb_ = setup_.factory->sees_rgb() && !records_spectra_;
   window_ = film.window();
   active_ = next_path_ = paths_of_newest_ = 0;
   only_colors_ = nullptr;                                // the setup may have others since
@@ -242,6 +243,7 @@ void PathWavefront::start_path(std::size_t path_number, ScenePath& path) {
     path.hero = static_cast<uint8_t>(channel);
     path.only_hero = true;
     path.throughput[channel] = 1;
+    path.may_differ = true;
   } else {
     for (int c = 0; c < channels; ++c) path.throughput[c] = 1;
   }

@@ -278,11 +278,12 @@ class PathWavefront {
   /// @param u in (0, 1)
   /// @return false if the path has ended
   bool survives(ScenePath& path, float u) const;
-  /// The same by a probability that is known.
+  /// Plays Russian roulette with a given probability of going on.
   static bool goes_on(ScenePath& path, float u, float survival);
   /// Largest magnitude of a path's throughput; no number below infinity if a channel is none.
   float magnitude(const ScenePath& path) const {
-    return meter_ != nullptr ? std::abs(path.throughput[0]) : largest_magnitude(path.throughput);
+    const bool is_first = meter_ != nullptr || !path.may_differ;
+    return is_first ? std::abs(path.throughput[0]) : largest_magnitude(path.throughput);
   }
   void go_on(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const;
   /// Sends a path on in a new direction.
@@ -346,7 +347,8 @@ class PathWavefront {
     ShadowEnd end;  ///< End of the shadow ray.
     /// The glass that refracts it, if any does.
     std::optional<ShadowTracer::Bend> bend;
-    /// What the light brings unshadowed, times the density of the draw; see from_only_light().
+    /// What the light brings unshadowed, times the density of the draw, before roulette of the
+    /// path; of the only light from_only_light() says it.
     SampledSpectrum radiance;
     float brought = 1;  ///< share_of_light() of the only light.
   };
@@ -359,9 +361,9 @@ class PathWavefront {
   };
   Scatterer scatterer_;
   std::optional<SceneLights::OnlyLight> only_light_;
-  float only_brightness_ = 0;                   // of that light, see brightness()
-  SampledSpectrum only_in_rgb_;                 // LightSample::radiance of it
-  const SampleSpectra* only_colors_ = nullptr;  // whose radiance the next is
+  float only_brightness_ = 0;    // of the only light, see brightness()
+  SampledSpectrum only_in_rgb_;  // radiance of the only light, and what it is in only_colors_
+  const SampleSpectra* only_colors_ = nullptr;
   SampledSpectrum only_in_colors_;
   const ScatteringKernels& kernels_;
   ScatteringStream scatterings_;
@@ -387,7 +389,8 @@ class PathWavefront {
   uint32_t hashed_pixel_ = UINT32_MAX;
   SampleSequence::Hashes film_hashes_{};  // of that pixel
   bool records_spectra_ = false;
-  PixelWindow window_;  // of the film at work
+  bool may_see_rgb_ = false;  // whether paths without colour see lights in R, G, B
+  PixelWindow window_;        // of the film at work
   PathCounts counts_;
 };
 

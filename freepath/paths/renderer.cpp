@@ -142,7 +142,9 @@ RenderResult render_scene(const PathScene& scene, ColorMode mode, const RenderSe
   if (settings.shadow_roulette || settings.lobe_splitting) {
     const ShadowGuide::Wanted wanted{.roulette = settings.shadow_roulette,
                                      .lobes = settings.lobe_splitting};
-    shadow_guide.emplace(factory, wanted, settings.walk.seed);
+    Threads(settings.threads).execute([&] {
+      shadow_guide.emplace(factory, wanted, settings.walk.seed);
+    });
   }
   std::optional<GlassSpheres> glass_spheres;
   if (settings.light_through_glass) glass_spheres.emplace(scene);

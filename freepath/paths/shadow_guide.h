@@ -15,10 +15,10 @@ namespace freepath {
 
 /// Says for how likely each light that was drawn a shadow ray is to be cast: Russian roulette on
 /// what the ray is expected to bring. That is what it would bring unshadowed times the root of the
-/// transmittance towards the lights' dominant direction, root mean square, tabulated in coarse
-/// cells; the root, since within a cell transmittances differ. It is compared with what the lights
-/// from outside would bring by one isotropic scattering, so that it does not matter how bright they
-/// are.
+/// transmittance towards the lights' dominant direction, tabulated in coarse cells as the root mean
+/// square of estimates; the root, since within a cell transmittances differ. It is compared with
+/// what the lights from outside would bring by one isotropic scattering, so that it does not matter
+/// how bright they are.
 ///
 /// Only light from outside of the scene after the second scattering plays: what is scattered once
 /// is the whole picture where media are thin, and there rays are few. Immutable; threads share it.

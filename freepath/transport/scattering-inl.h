@@ -113,8 +113,10 @@ inline void play_lanes(ScatteringStream& scatterings, float threshold) {
     const VecF magnitude = hn::Load(kFloat, &scatterings.magnitude[i]);
     const MaskF is_branch =
         hn::Gt(hn::Load(kFloat, &scatterings.lobe_roulette[i]), hn::Zero(kFloat));
-    const MaskF goes_on = hn::Or(is_branch, hn::Ge(magnitude, set(threshold)));
-    const VecF survival = hn::IfThenElse(goes_on, one, hn::Div(magnitude, set(threshold)));
+    const MaskF enough =
+        hn::And(hn::Ge(magnitude, set(threshold)), hn::Gt(magnitude, hn::Zero(kFloat)));
+    const VecF survival =
+        hn::IfThenElse(hn::Or(is_branch, enough), one, hn::Div(magnitude, set(threshold)));
     hn::Store(survival, kFloat, &scatterings.survival[i]);
   }
 }

@@ -35,8 +35,9 @@ struct ScatteringStream {
   Row<uint32_t> pixel{}, sample{}, stream{};
   std::array<Row<float>, kScatteringNumbers> numbers{};
   Row<float> magnitude{};  ///< Largest magnitude of the path's throughput.
-  /// With what probability the path goes on, [0, 1], by Russian roulette: if the number that is
-  /// drawn for it is below. Its throughput is to be divided by that.
+  /// Probability with which the path goes on, [0, 1], by Russian roulette: if the number that is
+  /// drawn for it is below. Its throughput is to be divided by that. Of branches 1: they play by
+  /// lobe_survival.
   Row<float> survival{};
   Row<float> g{};                         ///< Mean cosine of the phase function.
   std::array<Row<float>, 3> position{};   ///< [world, relative to the scene's origin]
@@ -57,7 +58,8 @@ struct ScatteringStream {
   // Of branches: LobeBranch.
   /// Largest magnitude of what is left of the throughput for a sun, before roulette of the path.
   Row<float> lobe_scale{};
-  Row<float> lobe_roulette{};  ///< Below what a branch plays Russian roulette; 0 for others.
+  /// Below what a branch plays Russian roulette; 0 for others, by which branches are told.
+  Row<float> lobe_roulette{};
   Row<float> lobe_survival{};  ///< With what probability a branch goes on, (0, 1].
   Row<float> lobe_chance{};    ///< With what probability a path that goes on splits.
 };

@@ -332,35 +332,6 @@ TEST(SceneLights, DrawsNoLightThatIsTheSameFromEverywhere) {
   }
 }
 
-TEST(SceneLights, DrawsOfTheSunAloneHaveOneRadianceAndOneDensity) {
-  const Sun sun({.elevation = 30, .irradiance = Rgb(4, 3, 2)}, UpAxis::kY);
-  SceneLightsDescription description;
-  // The sky is not drawn beside it.
-  description.lights = {SunLight{.sun = sun}, ConstantInfiniteLight{.radiance = spectra().warm}};
-  const SceneLights lights(description, spectra().table);
-  const auto only = lights.only_light();
-  ASSERT_TRUE(only);
-  ASSERT_NE(only->disc, nullptr);
-  const SpectrumValues in_rgb = spectra().table.in_rgb();
-  const SpectrumValues spectral =
-      spectra().table.at(sample_wavelengths<kMaxChannels>(0.37, WavelengthDensity::kVisible));
-  RandomStream random(1, 2, 3, 4);
-  for (int i = 0; i < 100; ++i) {
-    const float u0 = random.uniform();
-    const float u1 = random.uniform();
-    for (const SpectrumValues* values : {&in_rgb, &spectral}) {
-      const LightSample draw = lights.sample(kPosition, *values, u0, u1, random.uniform());
-      EXPECT_EQ(draw.direction, only->disc->sample(u0, u1));
-      EXPECT_EQ(draw.radiance, lights.only_radiance(*values));
-      EXPECT_FLOAT_EQ(draw.pdf, only->pdf);
-      EXPECT_EQ(draw.distance, only->distance);
-      EXPECT_FALSE(draw.delta);
-    }
-  }
-  description.lights.emplace_back(PointLight{.intensity = spectra().warm});
-  EXPECT_FALSE(SceneLights(description, spectra().table).only_light());
-}
-
 TEST(SceneLights, KnowsWhenThereIsNoLight) {
   const SpectrumValues values = spectra().table.in_rgb();
   EXPECT_FALSE(SceneLights({}, spectra().table).is_drawn());

@@ -50,6 +50,7 @@ ScatteringStream make_scatterings(uint32_t first, std::size_t count) {
     scatterings.light_value[i] = i % 11 == 0 ? random.uniform() : -1;
     scatterings.magnitude[i] = i % 2 == 0 ? 0.2F * random.uniform() : 3 * random.uniform();
     scatterings.lobe_roulette[i] = i % 9 == 0 ? kThreshold : 0;
+    scatterings.lobe_scale[i] = scatterings.magnitude[i] * (i % 4 == 1 ? 0.5F : 1.0F);
   }
   return scatterings;
 }
@@ -61,18 +62,46 @@ struct Cells {
 
   explicit Cells(float least) {
     RandomStream random(kSeed, 0, 0, 1);
-    for (int i = 0; i < 24; ++i) roots.push_back(random.uniform());
+    // No less than the least survival, which else hides them.
+    for (int i = 0; i < 24; ++i) roots.push_back(0.1F + 0.9F * random.uniform());
     roulette = {.least = least,
                 .dominant = {0, 0.6F, 0.8F},
                 .corner = {-1, -1, -1},
                 .per_cell = {1, 0.7F, 1.3F},
                 .counts = {3, 2, 4},
-                .roots = roots.data()};
+                .roots = roots.data(),
+                .lobe_scale = 3};
   }
 };
 
 Vec3f vector_at(const std::array<ScatteringStream::Row<float>, 3>& rows, std::size_t i) {
   return {rows[0][i], rows[1][i], rows[2][i]};
+}
+
+void expect_scalar_lobes(const ScatteringStream& lanes, const ShadowRoulette& roulette,
+                         std::size_t i) {
+  const float throughput = lanes.lobe_scale[i] / lanes.survival[i];
+  float root = 1;
+  if (roulette.roots != nullptr) {
+    // What a ray would be cast with that is expected to bring its root alone.
+    ShadowRoulette alone = roulette;
+    alone.least = 1;
+    root = alone.survival(vector_at(lanes.position, i), roulette.dominant, 0.9999999F);
+  }
+  float expected = 0;
+  if (roulette.lobe_scale != 0) {
+    const HenyeyGreenstein twice(lanes.g[i] * lanes.g[i]);
+    expected = throughput * roulette.lobe_scale *
+               twice.evaluate(vector_at(lanes.direction, i), roulette.dominant);
+  }
+  const float below = lanes.lobe_roulette[i];
+  const float worth = std::max(throughput, expected * root);
+  const float survival = worth < below ? worth / below : 1;
+  const float wanted = expected * std::max(root, ShadowRoulette::kLeastRoot);
+  const float chance =
+      wanted < ShadowRoulette::kLeastLobeChance ? 0 : std::min(wanted / survival, 1.0F);
+  EXPECT_NEAR(lanes.lobe_survival[i], survival, 1e-5F);
+  EXPECT_NEAR(lanes.lobe_chance[i], chance, 1e-5F);
 }
 
 void expect_scalar(const ScatteringStream& lanes, const ScatteringStream& before_lanes,
@@ -93,6 +122,7 @@ void expect_scalar(const ScatteringStream& lanes, const ScatteringStream& before
   ASSERT_EQ(lanes.shadow_survival[i],
             roulette.survival(vector_at(lanes.position, i), light,
                               lanes.brightness[i] * share / lanes.survival[i]));
+  expect_scalar_lobes(lanes, roulette, i);
   const PhaseSample next =
       phase.sample(before, lanes.numbers[kPhaseNumber][i], lanes.numbers[kPhaseNumber + 1][i]);
   ASSERT_EQ(lanes.next_pdf[i], next.pdf);
