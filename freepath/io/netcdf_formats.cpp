@@ -4,10 +4,15 @@
 #include <netcdf.h>
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "freepath/base/version.h"
 #include "freepath/io/netcdf_codec.h"
@@ -69,7 +74,11 @@ std::string type_name(nc_type type) {
 
 class OpenNetcdf : public NetcdfHandle {
  public:
-  explicit OpenNetcdf(int file) : file_(file) {}
+  /// @param bytes of the file
+  OpenNetcdf(int file, std::uintmax_t bytes)
+      : file_(file),
+        name_(std::make_unique_for_overwrite<char[]>(
+            std::max<std::size_t>(std::min(bytes, kLongestName), NC_MAX_NAME) + 1)) {}
   ~OpenNetcdf() override {
     const NetcdfCaller caller;
     nc_close(file_);
@@ -83,10 +92,10 @@ class OpenNetcdf : public NetcdfHandle {
     std::vector<int> ids(static_cast<std::size_t>(dimensions));
     if (const int status = nc_inq_dimids(file_, &dimensions, ids.data(), 0)) return status;
     for (const int id : ids) {
-      std::array<char, NC_MAX_NAME + 1> name{};
       std::size_t size = 0;
-      if (const int status = nc_inq_dim(file_, id, name.data(), &size)) return status;
-      contents.dimensions.push_back({name.data(), size});
+      if (const int status = nc_inq_dim(file_, id, name_.get(), &size)) return status;
+      if (is_too_long()) return NC_EMAXNAME;
+      contents.dimensions.push_back({name_.get(), size});
     }
     for (int id = 0; id < variables; ++id) {
       NetcdfVariable variable;
@@ -107,15 +116,16 @@ class OpenNetcdf : public NetcdfHandle {
 
  private:
   int describe(int id, const std::vector<int>& dimension_ids, NetcdfVariable& variable) const {
-    std::array<char, NC_MAX_NAME + 1> name{};
     nc_type type = NC_NAT;
     int rank = 0, attributes = 0;
-    std::array<int, NC_MAX_VAR_DIMS> dimensions{};
+    if (const int status = nc_inq_varndims(file_, id, &rank)) return status;
+    std::vector<int> dimensions(static_cast<std::size_t>(rank));
     if (const int status =
-            nc_inq_var(file_, id, name.data(), &type, &rank, dimensions.data(), &attributes)) {
+            nc_inq_var(file_, id, name_.get(), &type, nullptr, dimensions.data(), &attributes)) {
       return status;
     }
-    variable.name = name.data();
+    if (is_too_long()) return NC_EMAXNAME;
+    variable.name = name_.get();
     variable.type = type_name(type);
     for (int i = 0; i < rank; ++i) {
       const int dimension = dimensions[static_cast<std::size_t>(i)];
@@ -124,8 +134,9 @@ class OpenNetcdf : public NetcdfHandle {
       variable.dimensions.push_back(static_cast<int>(found - dimension_ids.begin()));
     }
     for (int i = 0; i < attributes; ++i) {
-      if (const int status = nc_inq_attname(file_, id, i, name.data())) return status;
-      if (const int status = read_attribute(id, name.data(), variable)) return status;
+      if (const int status = nc_inq_attname(file_, id, i, name_.get())) return status;
+      if (is_too_long()) return NC_EMAXNAME;
+      if (const int status = read_attribute(id, name_.get(), variable)) return status;
     }
     return NC_NOERR;
   }
@@ -154,7 +165,14 @@ class OpenNetcdf : public NetcdfHandle {
     return NC_NOERR;
   }
 
+  /// Whether the name that was read is longer than names may be.
+  bool is_too_long() const { return std::strlen(name_.get()) > NC_MAX_NAME; }
+
+  /// The library copies names of classic files whole, however long they are; none is longer than
+  /// its file. Memory is taken as it is written, that of names alone.
+  static constexpr std::uintmax_t kLongestName = 1 << 30;
   int file_;
+  std::unique_ptr<char[]> name_;  // NOLINT(modernize-avoid-c-arrays): not to be cleared
 };
 
 std::unique_ptr<NetcdfHandle> open_netcdf_file(const std::string& path, NetcdfContents& contents,
@@ -166,7 +184,8 @@ std::unique_ptr<NetcdfHandle> open_netcdf_file(const std::string& path, NetcdfCo
     int file = -1;
     status = nc_open(path.c_str(), NC_NOWRITE, &file);
     if (status == NC_NOERR) {
-      opened = std::make_unique<OpenNetcdf>(file);
+      std::error_code unknown;
+      opened = std::make_unique<OpenNetcdf>(file, std::filesystem::file_size(path, unknown));
       status = opened->list(contents);
     }
   }

@@ -250,6 +250,57 @@ TEST(NetcdfVolumes, WhatIsMissingOrWrongIsNamed) {
             std::string::npos);
 }
 
+/// A classic file of one dimension and one variable with one text, byte by byte: as no library
+/// writes it.
+Bytes classic_file(const std::string& dimension, const std::string& variable,
+                   const std::string& text, uint32_t rank) {
+  std::string file("CDF\1", 4);
+  const auto number = [&](uint32_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8) file += static_cast<char>(value >> shift & 0xFF);
+  };
+  const auto name = [&](const std::string& characters) {
+    number(static_cast<uint32_t>(characters.size()));
+    file += characters;
+    file.resize((file.size() + 3) / 4 * 4);
+  };
+  constexpr uint32_t kDimensions = 10, kVariables = 11, kTexts = 12, kFloat = 5;
+  for (const uint32_t value : {0U, kDimensions, 1U}) number(value);
+  name(dimension);
+  for (const uint32_t value : {1U, 0U, 0U, kVariables, 1U}) number(value);
+  name(variable);
+  number(rank);
+  for (uint32_t i = 0; i < rank; ++i) number(0);
+  for (const uint32_t value : {kTexts, 1U}) number(value);
+  name(text);
+  number(2);  // characters
+  name("m");
+  for (const uint32_t value : {kFloat, 4U}) number(value);
+  number(static_cast<uint32_t>(file.size()) + 4);
+  number(0);
+  return {file.begin(), file.end()};
+}
+
+// NetCDF's library copies what it finds, whatever room there is.
+TEST(NetcdfVolumes, NamesAndRanksBeyondAllLimitsAreErrors) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& dimension, const std::string& variable,
+                         const std::string& text, uint32_t rank) {
+    write_bytes(folder / "a.nc", classic_file(dimension, variable, text, rank));
+    return error_of([&] { load_named(folder / "a.nc"); });
+  };
+  EXPECT_NE(error("x", "v", "units", 1).find("no variable along"), std::string::npos);
+  for (const std::size_t length : {257, 2000}) {
+    const std::string name(length, 'n');
+    for (const std::string& message :
+         {error(name, "v", "units", 1), error("x", name, "units", 1), error("x", "v", name, 1)}) {
+      EXPECT_NE(message.find("NC_MAX_NAME"), std::string::npos) << message;
+    }
+  }
+  // Of these the library has its own opinion.
+  EXPECT_NE(error(std::string(100'000, 'n'), "v", "units", 1), "");
+  for (const uint32_t rank : {1025U, 50'000U}) EXPECT_NE(error("x", "v", "units", rank), "");
+}
+
 TEST(NetcdfVolumes, EveryTruncationIsAnError) {
   const TemporaryFolder folder;
   for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4}) {
