@@ -193,7 +193,7 @@ TEST(SceneClosedForm, HomogeneousMediaAreKnownWithoutLookUps) {
                   MediumInterface "m" "" Shape "sphere" AttributeEnd)",
               diagnostics),
         diagnostics);
-    RenderSettings settings = settings_of(built, {.samples = 16});
+    RenderSettings settings = settings_of(built, {.samples = 32});
     settings.chooses_transmittance = chooses;
     return render_scene(built.scene, ColorMode::kRgb, settings);
   };
