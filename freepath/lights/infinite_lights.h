@@ -42,7 +42,7 @@ class InfiniteLights {
   /// Whether there is something to draw.
   bool is_drawn() const { return is_drawn_; }
 
-  /// What an escaping ray sees, and the density of `sample` in its direction [1/sr].
+  /// Radiance that an escaping ray sees, and the density of `sample` in its direction [1/sr].
   LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
   /// A draw of all lights together that are drawn, of density 0 if there is none.
   LightSample sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,

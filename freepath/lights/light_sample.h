@@ -36,7 +36,7 @@ struct LightSample {
   bool delta = false;
 };
 
-/// What a ray sees of lights.
+/// View of lights along a ray.
 struct LightSeen {
   SampledSpectrum radiance;  ///< Of lights that are drawn: a draw finds it too.
   /// Density with which SceneLights::sample would have drawn the ray's direction at its start

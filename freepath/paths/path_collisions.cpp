@@ -166,7 +166,7 @@ void PathWavefront::cast_shadow(std::size_t i) {
   if (survival < 1 && scatterings_.numbers[kShadowNumber][i] >= survival) return;
   const ScenePath& path = paths_[scattering.slot];
   float counted = survival < 1 ? share / survival : share;
-  // What was drawn is of before the path's own roulette.
+  // The radiance of a draw is that before the path's own roulette.
   const float path_survival = scatterings_.survival[i];
   if (!only_light_ && path_survival < 1) counted *= 1.0F / path_survival;
   const SampledSpectrum radiance =

@@ -197,7 +197,7 @@ class PathWavefront {
   /// Takes that light for a scattering in the queue.
   void take_only_light(std::size_t scattering, const ScenePath& path);
   struct Scattering;
-  /// What that light brings by a scattering unshadowed, times the density of the draw.
+  /// Radiance that the only light brings by a scattering unshadowed, times the density of the draw.
   SampledSpectrum from_only_light(const ScenePath& path, const Scattering& scattering);
   /// Whether the shadow ray to a light at some distance plays Russian roulette.
   bool plays(const ScenePath& path, float distance) const {
@@ -347,8 +347,8 @@ class PathWavefront {
     ShadowEnd end;  ///< End of the shadow ray.
     /// The glass that refracts it, if any does.
     std::optional<ShadowTracer::Bend> bend;
-    /// What the light brings unshadowed, times the density of the draw, before roulette of the
-    /// path; of the only light from_only_light() says it.
+    /// Radiance that the light brings unshadowed, times the density of the draw, before roulette of
+    /// the path; of the only light from_only_light() says it.
     SampledSpectrum radiance;
     float brought = 1;  ///< share_of_light() of the only light.
   };

@@ -16,8 +16,8 @@
 namespace freepath {
 namespace {
 
-/// Of what an isotropic scattering brings: rays play that are expected to bring less. Half of it
-/// and twice as much are as efficient.
+/// Share of what an isotropic scattering brings: rays play that are expected to bring less. Half of
+/// it and twice as much are as efficient.
 constexpr float kThreshold = 0.2F;
 
 /// Draws from which the dominant direction is found.
