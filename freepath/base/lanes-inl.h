@@ -120,6 +120,26 @@ class Refill {
   Indices indices_;
 };
 
+/// Packs chosen lanes, the opposite of Refill: the n-th of them becomes the n-th of the array.
+class Packing {
+ public:
+  HWY_INLINE explicit Packing(uint32_t lanes)
+      : order_(hn::IndicesFromVec(kFloat,
+                                  hn::Compress(hn::Iota(kInt, 0), int_mask(mask_of(lanes))))) {}
+
+  /// Writes kLanes values, those behind the chosen ones of no meaning.
+  HWY_INLINE void write(VecF values, float* array) const {
+    hn::StoreU(hn::TableLookupLanes(values, order_), kFloat, array);
+  }
+  HWY_INLINE void write(VecU values, uint32_t* array) const {
+    const VecF packed = hn::TableLookupLanes(hn::BitCast(kFloat, values), order_);
+    hn::StoreU(hn::BitCast(kUint, packed), kUint, array);
+  }
+
+ private:
+  decltype(hn::IndicesFromVec(kFloat, hn::Zero(kInt))) order_;
+};
+
 /// Whole numbers in [0, 2^23) as integers. Others give what no caller may use; a conversion that
 /// saturates them would cost three times as much.
 HWY_INLINE VecI small_to_int(VecF whole) {

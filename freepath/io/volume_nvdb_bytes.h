@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "freepath/base/page_allocator.h"
 #include "freepath/io/volume_file.h"
-#include "freepath/media/page_allocator.h"
 
 namespace freepath::io {
 

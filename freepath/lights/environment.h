@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "freepath/base/distributions.h"
+#include "freepath/base/page_allocator.h"
 #include "freepath/base/rgb.h"
 #include "freepath/base/turn.h"
 #include "freepath/base/up_axis.h"
@@ -147,7 +148,7 @@ class ImageEnvironment {
   /// R, G, B of a pixel and its density [1/sr], in one register.
   struct alignas(16) Texel : std::array<float, 4> {};
   static constexpr std::size_t kPdf = 3;
-  std::vector<Texel> texels_;
+  std::vector<Texel, PageAllocator<Texel>> texels_;  // read at random
   std::vector<float> row_heights_;  // cosine of the zenith angle at the rows' upper edges
   PixelDraws draws_;
   Rgb fluence_{0.0F};

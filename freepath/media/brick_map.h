@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "freepath/base/page_allocator.h"
 #include "freepath/base/vector.h"
-#include "freepath/media/page_allocator.h"
 
 namespace freepath {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "freepath/base/box.h"
+#include "freepath/base/page_allocator.h"
 #include "freepath/base/rgb.h"
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/base/vector.h"
 #include "freepath/media/field.h"
-#include "freepath/media/page_allocator.h"
 #include "freepath/media/phase/phase_function.h"
 #include "freepath/media/radiance_field.h"
 #include "freepath/media/super_voxels.h"

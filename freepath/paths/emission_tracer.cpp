@@ -29,7 +29,7 @@ void EmissionTracer::add(uint32_t owner, const ScenePath& path, const Vec3f& pos
   }
 }
 
-void EmissionTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics) {
+void EmissionTracer::trace(std::span<ScenePath> paths, WalkStatistics& statistics) {
   if (lines_.empty()) return;
   for (WalkBatches::Batch* const batch : batches_.finish()) {
     batch->walker->free_paths(batch->rays, flights_, statistics);

@@ -2,6 +2,7 @@
 /// @file Flights that collect what a medium emits along a direction drawn for it.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "freepath/base/sampled_spectrum.h"
@@ -28,7 +29,7 @@ class EmissionTracer {
            const SampledSpectrum& weight);
 
   /// Walks all flights, adds to their paths, and forgets them.
-  void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics);
+  void trace(std::span<ScenePath> paths, WalkStatistics& statistics);
 
  private:
   struct Line {

@@ -33,7 +33,7 @@ void NearLightLines::add(const Line& line, const Vec3f& origin, const ScenePath&
   batch.rays.stream[i] = stream_of(StreamPurpose::kShadowWalk, path);
 }
 
-void NearLightLines::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics,
+void NearLightLines::trace(std::span<ScenePath> paths, WalkStatistics& statistics,
                            const std::function<void(const Line&)>& use) {
   if (lines_.empty()) return;
   for (WalkBatches::Batch* const batch : batches_.finish()) {

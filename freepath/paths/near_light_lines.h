@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "freepath/base/random.h"
@@ -45,7 +46,7 @@ class NearLightLines {
   void add(const Line& line, const Vec3f& origin, const ScenePath& path);
 
   /// Walks to all points, calls use(line) for those from which something arrives, and forgets them.
-  void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics,
+  void trace(std::span<ScenePath> paths, WalkStatistics& statistics,
              const std::function<void(const Line&)>& use);
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "freepath/base/page_allocator.h"
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/paths/flux_tally.h"
 #include "freepath/paths/layer_recorder.h"
@@ -52,7 +53,7 @@ class OpenJobs {
   Job& operator[](uint32_t number) { return jobs_[number]; }
   const Job& operator[](uint32_t number) const { return jobs_[number]; }
 
-  std::vector<PathSample> results;
+  std::vector<PathSample, PageAllocator<PathSample>> results;
   /// Radiance of the same paths, if the film records spectra.
   std::vector<SampledSpectrum> spectra;
   LayerRecorder layers;            ///< Layers of the results.

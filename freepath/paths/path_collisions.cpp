@@ -3,6 +3,7 @@
 #include "freepath/paths/path_wavefront.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <utility>
 
@@ -21,6 +22,32 @@ constexpr float kPerColor = 1.0F / 3;
 constexpr ShadowRoulette kAllShadowRays;
 
 }  // namespace
+
+inline SampledSpectrum PathWavefront::from_only_light(const ScenePath& path,
+                                                      const Scattering& scattering) {
+  if (scattering.in_rgb) return only_in_rgb_ * (path.throughput[0] * scattering.brought);
+  if (path.colors != only_colors_) {
+    only_colors_ = path.colors;
+    only_in_colors_ = scene_.lights->only_radiance(path.colors->spectra);
+  }
+  return path.throughput * only_in_colors_ * scattering.brought;
+}
+
+inline void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
+  Scattering& scattering = scattered_[i];
+  scattering.in_rgb = sees_rgb(path);
+  scattering.brought = share_of_light(path, only_light_->towards, only_light_->distance);
+  // Most paths have no colour, and most shadow rays are not cast: what they bring can wait.
+  float& brightness_there = scatterings_.brightness[i];
+  if (!plays(path, only_light_->distance)) {
+    brightness_there = kNeverFaint;
+  } else if (scattering.in_rgb) {
+    brightness_there = path.throughput[0] * scattering.brought * only_brightness_;
+  } else {
+    brightness_there =
+        brightness(path, from_only_light(path, scattering), false, only_light_->distance);
+  }
+}
 
 void PathWavefront::collide(std::size_t slot, const WalkBatches::Batch& batch, std::size_t i,
                             float magnitude) {
@@ -89,32 +116,6 @@ float PathWavefront::brightness(const ScenePath& path, const SampledSpectrum& ra
   return sum * (path.channel < 0 ? path.colors->per_white : path.colors->mean_per_white);
 }
 
-inline SampledSpectrum PathWavefront::from_only_light(const ScenePath& path,
-                                                      const Scattering& scattering) {
-  if (scattering.in_rgb) return only_in_rgb_ * (path.throughput[0] * scattering.brought);
-  if (path.colors != only_colors_) {
-    only_colors_ = path.colors;
-    only_in_colors_ = scene_.lights->only_radiance(path.colors->spectra);
-  }
-  return path.throughput * only_in_colors_ * scattering.brought;
-}
-
-void PathWavefront::take_only_light(std::size_t i, const ScenePath& path) {
-  Scattering& scattering = scattered_[i];
-  scattering.in_rgb = sees_rgb(path);
-  scattering.brought = share_of_light(path, only_light_->towards, only_light_->distance);
-  // Most paths have no colour, and most shadow rays are not cast: what they bring can wait.
-  float& brightness_there = scatterings_.brightness[i];
-  if (!plays(path, only_light_->distance)) {
-    brightness_there = kNeverFaint;
-  } else if (scattering.in_rgb) {
-    brightness_there = path.throughput[0] * scattering.brought * only_brightness_;
-  } else {
-    brightness_there =
-        brightness(path, from_only_light(path, scattering), false, only_light_->distance);
-  }
-}
-
 void PathWavefront::draw_light_of(std::size_t i, const ScenePath& path) {
   Scattering& scattering = scattered_[i];
   scattering.in_rgb = sees_rgb(path);
@@ -160,18 +161,21 @@ void PathWavefront::set_only_light() {
 
 void PathWavefront::cast_shadow(std::size_t i) {
   const Scattering& scattering = scattered_[i];
-  const float share = scatterings_.light_share[i];
-  if (share == 0) return;
-  const float survival = scatterings_.shadow_survival[i];
-  if (survival < 1 && scatterings_.numbers[kShadowNumber][i] >= survival) return;
   const ScenePath& path = paths_[scattering.slot];
-  float counted = survival < 1 ? share / survival : share;
+  float counted = scatterings_.shadow_weight[i];
   // The radiance of a draw is that before the path's own roulette.
   const float path_survival = scatterings_.survival[i];
   if (!only_light_ && path_survival < 1) counted *= 1.0F / path_survival;
   const SampledSpectrum radiance =
       (only_light_ ? from_only_light(path, scattering) : scattering.radiance) * counted;
-  if (is_black(radiance)) return;
+  if (is_black(radiance)) {
+    scatterings_.cast &= ~(ScatteringStream::Set{1} << i);
+    return;
+  }
+  if (shadows_.is_open()) {
+    shadows_.add_arrival(scattering.slot, radiance, scattering.in_rgb);
+    return;
+  }
   const Vec3f position = vector_at(scatterings_.position, i);
   const Vec3f to_light = vector_at(scatterings_.to_light, i);
   if (scattering.bend) {
@@ -214,38 +218,45 @@ void PathWavefront::turn_scattered(std::size_t i, ScenePath& path) {
   ++path.flights;
   if (has_alpha_) path.turned_in = path.flights;
   path.is_sent = path.is_in_rays = true;
-  going_on_[going_on_count_++] = static_cast<uint32_t>(i);
+  going_on_ |= ScatteringStream::Set{1} << i;
 }
 
 void PathWavefront::send_scattered(const Walker& walker) {
-  const std::size_t count = std::exchange(going_on_count_, 0);
-  if (count == 0) return;
+  const ScatteringStream::Set some = std::exchange(going_on_, 0);
+  if (some == 0) return;
+  const auto count = static_cast<std::size_t>(std::popcount(some));
   auto [batch, first] = sent_.add_all(walker, count);
   RayStream& rays = batch.rays;
-  const auto copy = [&, first = first](const auto& row, auto& values) {
-    for (std::size_t n = 0; n < count; ++n) values[first + n] = row[going_on_[n]];
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    copy(scatterings_.position[axis], rays.origin[axis]);
-    copy(scatterings_.next[axis], rays.direction[axis]);
-  }
-  copy(scatterings_.pixel, rays.pixel);
-  copy(scatterings_.sample, rays.sample);
   constexpr uint32_t kToNextWalk =
       stream_number(StreamPurpose::kWalk, 1) - stream_number(StreamPurpose::kScatter, 0);
-  for (std::size_t n = 0; n < count; ++n) {
-    rays.stream[first + n] = scatterings_.stream[going_on_[n]] + kToNextWalk;
-    const uint32_t slot = scattered_[going_on_[n]].slot;
-    batch.owners[first + n] = slot;
-    rays.t_max[first + n] = has_sides_ ? paths_[slot].side : std::numeric_limits<float>::infinity();
+  kernels_.send(scatterings_, some, scatterings_.next, kToNextWalk, rays, first);
+  std::size_t ray = first;
+  for (ScatteringStream::Set rest = some; rest != 0; rest &= rest - 1) {
+    batch.owners[ray++] = scattered_[std::countr_zero(rest)].slot;
   }
-  if (!rays.weighted()) return;
-  for (std::size_t n = 0; n < count; ++n) {
-    const ScenePath& path = paths_[batch.owners[first + n]];
+  std::fill_n(rays.t_max.begin() + first, count, std::numeric_limits<float>::infinity());
+  if (!has_sides_ && !rays.weighted()) return;
+  for (ray = first; ray < first + count; ++ray) {
+    const ScenePath& path = paths_[batch.owners[ray]];
+    rays.t_max[ray] = path.side;
+    if (!rays.weighted()) continue;
     for (int c = 0; c < walker.channels(); ++c) {
-      rays.weight[c][first + n] = path.throughput[c];
-      rays.density[c][first + n] = path.density[c];
+      rays.weight[c][ray] = path.throughput[c];
+      rays.density[c][ray] = path.density[c];
     }
+  }
+}
+
+void PathWavefront::send_shadows(const Walker& walker) {
+  const ScatteringStream::Set some = scatterings_.cast;
+  if (some == 0) return;
+  const auto count = static_cast<std::size_t>(std::popcount(some));
+  auto [batch, first] = shadows_.add_rays(walker, count);
+  constexpr uint32_t kToShadow =
+      stream_number(StreamPurpose::kShadowWalk, 0) - stream_number(StreamPurpose::kScatter, 0);
+  kernels_.send(scatterings_, some, scatterings_.to_light, kToShadow, batch.rays, first);
+  for (ScatteringStream::Set rest = some; rest != 0; rest &= rest - 1) {
+    batch.rays.t_max[first++] = scattered_[std::countr_zero(rest)].end.distance;
   }
 }
 
@@ -282,7 +293,7 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
         !goes_on(path, scatterings_.numbers[kRouletteNumber][i], scatterings_.survival[i]);
     if (path.is_dead) continue;
     if (is_viewed) show_collision(i);
-    if (draws_lights) cast_shadow(i);
+    if (draws_lights && (scatterings_.cast >> i & 1) != 0) cast_shadow(i);
     if (guide != nullptr && !path.is_branch) draw_emission(i, *guide);
     if (path.is_branch) {
       const float survival = scatterings_.lobe_survival[i];
@@ -300,6 +311,7 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
       path.emission_share = path.pdf / (path.pdf + found);
     }
   }
+  if (draws_lights && shadows_.is_open()) send_shadows(*batch.walker);
   send_scattered(*batch.walker);
   scatterings_.count = 0;
   has_given_ = false;

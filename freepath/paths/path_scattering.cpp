@@ -8,9 +8,7 @@
 
 namespace freepath {
 
-bool PathWavefront::sees_rgb(const ScenePath& path) const {
-  if (!may_see_rgb_ || path.is_coloured) return false;
-  if (!path.may_differ) return true;
+bool PathWavefront::is_grey(const ScenePath& path) {
   const SampledSpectrum& c = path.throughput;
   for (int i = 1; i < path.colors->spectra.channels(); ++i) {
     if (c[i] != c[0]) return false;

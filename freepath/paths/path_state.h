@@ -47,10 +47,11 @@ struct alignas(64) ScenePath {
   bool is_in_rays = false;  ///< Its ray lies in a stream alone: `origin` and so on are of old.
 
   alignas(64) SampledSpectrum throughput;
-  SampledSpectrum radiance;
   /// The part of the radiance that is known in R, G, B: what a throughput without colour brings of
-  /// lights, whose integral over all wavelengths is known.
+  /// lights, whose integral over all wavelengths is known. Beside the throughput, since most shadow
+  /// rays add to it.
   SampledSpectrum rgb;
+  SampledSpectrum radiance;       ///< All else.
   SampledSpectrum density{1.0F};  ///< FlightStream::density of the flights so far.
 
   uint32_t turned_in = 0;  ///< The flight with which its direction began, if that is asked for.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "freepath/base/page_allocator.h"
 #include "freepath/base/random.h"
 #include "freepath/paths/emission_tracer.h"
 #include "freepath/paths/flux_meter.h"
@@ -141,7 +142,10 @@ class PathWavefront {
   PathSample& result_of(const ScenePath& path) { return jobs_.results[path.result]; }
 
   /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
-  bool sees_rgb(const ScenePath& path) const;
+  bool sees_rgb(const ScenePath& path) const {
+    return may_see_rgb_ && !path.is_coloured && (!path.may_differ || is_grey(path));
+  }
+  static bool is_grey(const ScenePath& path);
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
   /// A path's throughput in the channels of these spectra.
   static SampledSpectrum light_throughput(const ScenePath& path, bool in_rgb);
@@ -254,7 +258,7 @@ class PathWavefront {
   /// between.
   float shadow_survival(const ScenePath& path, const Vec3f& position, const LightSample& light,
                         const SampledSpectrum& radiance) const;
-  /// Casts a ray towards that light.
+  /// Casts a ray towards that light, which send_shadows() writes where it can.
   void cast_shadow(std::size_t scattering);
   /// Draws the next direction of a scattering whose phase function the lanes don't know.
   void draw_direction_of(std::size_t scattering);
@@ -262,6 +266,8 @@ class PathWavefront {
   void turn_scattered(std::size_t scattering, ScenePath& path);
   /// Writes the rays of those that only the next walk needs into its stream.
   void send_scattered(const Walker& walker);
+  /// Writes the rays to the lights of those that cast one, where these meet but media.
+  void send_shadows(const Walker& walker);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
     if (meter_ != nullptr || scene_.domain) return nullptr;
@@ -326,13 +332,13 @@ class PathWavefront {
   bool has_sides_;          // whether rays end at sides of a domain, or at planes
   MediaSetTable media_sets_;
   MediaSetId camera_media_ = 0;
-  std::optional<Box3f> everything_;                        // around the medium, if that is all
-  bool is_balanced_ = true;                                // whether white stays as it is
-  bool has_alpha_ = false;                                 // whether a shape of the scene has
-  std::vector<std::optional<uint32_t>> shapes_of_lights_;  // by LightSample::Area::light
-  std::vector<TiedSurface> ties_;                          // of the surface that a path meets
-  std::vector<ScenePath> paths_;                           // in slots
-  std::vector<SurfaceHit> hits_;                           // of the paths, if there are surfaces
+  std::optional<Box3f> everything_;                         // around the medium, if that is all
+  bool is_balanced_ = true;                                 // whether white stays as it is
+  bool has_alpha_ = false;                                  // whether a shape of the scene has
+  std::vector<std::optional<uint32_t>> shapes_of_lights_;   // by LightSample::Area::light
+  std::vector<TiedSurface> ties_;                           // of the surface that a path meets
+  std::vector<ScenePath, PageAllocator<ScenePath>> paths_;  // in slots
+  std::vector<SurfaceHit> hits_;                            // of the paths, if there are surfaces
   std::vector<uint32_t> slots_;  // those of the paths in flight, then the others
   std::size_t active_ = 0;       // paths in flight
   // Rays in flight, and those of the next round, which scatterings write.
@@ -369,8 +375,7 @@ class PathWavefront {
   ScatteringStream scatterings_;
   bool has_given_ = false;  // whether ScatteringStream::is_given of one of them
   std::array<Scattering, ScatteringStream::kCapacity> scattered_;
-  std::array<uint32_t, ScatteringStream::kCapacity> going_on_{};  // see send_scattered()
-  std::size_t going_on_count_ = 0;
+  ScatteringStream::Set going_on_ = 0;  // see send_scattered()
   ShadowTracer shadows_;
   EmissionTracer emissions_;
   // Where there are lights near media; else null.

@@ -99,10 +99,11 @@ WavelengthSampler::WavelengthSampler(const PathScene& scene, ColorMode mode, int
       depends_on_wavelengths_ = true;
     }
   }
-  sees_rgb_ = mode == ColorMode::kSpectral && paths_per_sample_ == 1 &&
-              std::all_of(scene.media.begin(), scene.media.end(), [&](const SceneMedium& medium) {
-                return medium.is_grey(*scene.spectra);
-              });
+  sees_rgb_ = paths_per_sample_ == 1 &&
+              (mode == ColorMode::kRgb ||
+               std::all_of(scene.media.begin(), scene.media.end(), [&](const SceneMedium& medium) {
+                 return medium.is_grey(*scene.spectra);
+               }));
   rgb_ = mode == ColorMode::kRgb ? make(first)
                                  : std::make_shared<const SampleSpectra>(
                                        *this, scene.spectra->seen_in_rgb(),

@@ -131,8 +131,8 @@ class WavelengthSampler {
   /// R, G, B of the scene's spectra: as given where R, G, B is rendered, else as the observer sees
   /// the spectra, so that light may be seen in both ways.
   const SpectrumValues& rgb() const { return rgb_->spectra; }
-  /// Whether paths without colour may see lights in R, G, B: wavelengths are rendered, and no
-  /// medium tells them apart.
+  /// Whether paths without colour may see lights in R, G, B: those are rendered, or wavelengths
+  /// that no medium tells apart.
   bool sees_rgb() const { return sees_rgb_; }
 
  private:

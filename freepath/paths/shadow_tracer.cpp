@@ -191,7 +191,7 @@ void ShadowTracer::trace_part(Shadow& shadow, Arrival& arrival, const ScenePath&
   shadow.media = media;
 }
 
-void ShadowTracer::trace(std::vector<ScenePath>& paths, WalkStatistics& statistics,
+void ShadowTracer::trace(std::span<ScenePath> paths, WalkStatistics& statistics,
                          const Deposit& deposit) {
   if (arrivals_.empty()) return;
   if (scene_.surfaces) {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "freepath/base/sampled_spectrum.h"
@@ -47,6 +49,22 @@ class ShadowTracer {
     if (!scene_.surfaces) trace_surfaces(shadows_.back(), arrivals_.back(), path);
   }
 
+  /// Whether each ray meets at most one medium, and nothing else: such may be added by their
+  /// walker.
+  bool is_open() const { return is_open_; }
+  /// Adds what a ray of that kind brings, as add(). The ray follows by add_rays().
+  void add_arrival(uint32_t owner, const SampledSpectrum& radiance, bool is_rgb) {
+    arrivals_.push_back({radiance, owner, kNoCell, is_rgb});
+  }
+  /// Where to write the rays of the last arrivals, one behind the other.
+  /// @param walker of the medium that they are in
+  WalkBatches::Slot add_rays(const Walker& walker, std::size_t count) {
+    const WalkBatches::Slot slot = batches_.add_all(walker, count);
+    std::iota(slot.batch.owners.begin() + slot.slot, slot.batch.owners.begin() + slot.slot + count,
+              static_cast<uint32_t>(arrivals_.size() - count));
+    return slot;
+  }
+
   /// Ray from where another is refracted on to the light.
   struct Bend {
     Vec3f origin, direction;  ///< [world, relative to the scene's origin]; unit.
@@ -66,7 +84,7 @@ class ShadowTracer {
   /// Takes what a ray adds to a cell.
   using Deposit = std::function<void(ScenePath&, uint32_t cell, const SampledSpectrum&)>;
   /// Traces all rays, adds to their paths or cells, and forgets them.
-  void trace(std::vector<ScenePath>& paths, WalkStatistics& statistics, const Deposit& deposit);
+  void trace(std::span<ScenePath> paths, WalkStatistics& statistics, const Deposit& deposit);
 
  private:
   /// What a ray brings, and whom.

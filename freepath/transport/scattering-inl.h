@@ -7,6 +7,7 @@
 #define FREEPATH_TRANSPORT_SCATTERING_INL_H_
 #endif
 
+#include <bit>
 #include <vector>
 
 #include "freepath/base/direction_disc.h"
@@ -209,6 +210,7 @@ HWY_INLINE VecF survival_lanes(const ShadowRoulette& roulette, const DominantLan
 }
 
 inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& roulette) {
+  scatterings.cast = 0;
   for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
     const VecF g = hn::Load(kFloat, &scatterings.g[i]);
     const HenyeyGreensteinLanes phase(g);
@@ -227,12 +229,20 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
     const MaskF drawn = hn::Gt(light_pdf, hn::Zero(kFloat));
     const VecF density = hn::IfThenElse(drawn, hn::Add(light_pdf, chance), set(1.0F));
     const VecF share = hn::IfThenElseZero(drawn, hn::Div(value, density));
-    hn::Store(share, kFloat, &scatterings.light_share[i]);
     const VecF survival = hn::Load(kFloat, &scatterings.survival[i]);
     const VecF brightness =
         hn::Div(hn::Mul(hn::Load(kFloat, &scatterings.brightness[i]), share), survival);
-    hn::Store(survival_lanes(roulette, dominant, brightness), kFloat,
-              &scatterings.shadow_survival[i]);
+    const VecF shadow_survival = survival_lanes(roulette, dominant, brightness);
+    const auto is_below = [&](ScatteringNumber number, VecF chance_of_it) {
+      return hn::Lt(hn::Load(kFloat, &scatterings.numbers[number][i]), chance_of_it);
+    };
+    const MaskF cast =
+        hn::And(is_below(kRouletteNumber, survival), is_below(kShadowNumber, shadow_survival));
+    const VecF weight = hn::IfThenElseZero(cast, hn::Div(share, shadow_survival));
+    hn::Store(weight, kFloat, &scatterings.shadow_weight[i]);
+    const MaskF some =
+        hn::And(hn::Gt(weight, hn::Zero(kFloat)), hn::FirstN(kFloat, scatterings.count - i));
+    scatterings.cast |= ScatteringStream::Set{bits_of(some)} << i;
     const LobeLanes lobe = lobe_lanes(
         roulette, g, before, hn::Div(hn::Load(kFloat, &scatterings.lobe_scale[i]), survival),
         hn::Load(kFloat, &scatterings.lobe_roulette[i]), dominant.root);
@@ -249,8 +259,30 @@ inline void scatter_lanes(ScatteringStream& scatterings, const ShadowRoulette& r
   }
 }
 
+inline void send_lanes(const ScatteringStream& scatterings, ScatteringStream::Set some,
+                       const std::array<ScatteringStream::Row<float>, 3>& direction,
+                       uint32_t stream_step, RayStream& rays, std::size_t first) {
+  constexpr ScatteringStream::Set kAllLanes = (ScatteringStream::Set{1} << kLanes) - 1;
+  for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
+    const auto bits = static_cast<uint32_t>(some >> i & kAllLanes);
+    if (bits == 0) continue;
+    // Streams have room for the lanes behind.
+    const Packing packing(bits);
+    for (int axis = 0; axis < 3; ++axis) {
+      packing.write(hn::Load(kFloat, &scatterings.position[axis][i]), &rays.origin[axis][first]);
+      packing.write(hn::Load(kFloat, &direction[axis][i]), &rays.direction[axis][first]);
+    }
+    packing.write(hn::Load(kUint, &scatterings.pixel[i]), &rays.pixel[first]);
+    packing.write(hn::Load(kUint, &scatterings.sample[i]), &rays.sample[first]);
+    packing.write(hn::Add(hn::Load(kUint, &scatterings.stream[i]), hn::Set(kUint, stream_step)),
+                  &rays.stream[first]);
+    first += static_cast<std::size_t>(std::popcount(bits));
+  }
+}
+
 inline ScatteringKernels make_scattering_kernels() {
-  return {&gather_scatterings, &draw_scattering_numbers, &play_lanes, &aim_lanes, &scatter_lanes};
+  return {&gather_scatterings, &draw_scattering_numbers, &play_lanes,
+          &aim_lanes,          &scatter_lanes,           &send_lanes};
 }
 
 }  // namespace freepath::HWY_NAMESPACE

@@ -1,14 +1,17 @@
 #pragma once
 /// @file Scatterings in media as compiled for one target.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+
+#include "freepath/transport/scattering_stream.h"
 
 namespace freepath {
 
 struct DirectionDisc;
 struct FlightStream;
 struct RayStream;
-struct ScatteringStream;
 struct ShadowRoulette;
 
 /// Steps of scatterings in media, as compiled for one target; the same bits on all of them.
@@ -27,9 +30,17 @@ struct ScatteringKernels {
   /// Draws directions to a light whose draws all lie in one disc, by the numbers that were drawn.
   void (*aim)(ScatteringStream& scatterings, const DirectionDisc& disc) = nullptr;
   /// Evaluates the phase function of Henyey and Greenstein towards the lights, weighs these by the
-  /// balance heuristic [Veach97] and says how likely their shadow rays are to be cast; draws next
-  /// directions, by the numbers that were drawn.
+  /// balance heuristic [Veach97] and says which shadow rays are cast; draws next directions, by the
+  /// numbers that were drawn.
   void (*scatter)(ScatteringStream& scatterings, const ShadowRoulette& roulette) = nullptr;
+  /// Writes rays that begin at scatterings into a stream, one behind the other: all but their
+  /// length and weights.
+  /// @param some of the scatterings, as many as there is room for from `first` on
+  /// @param direction of the rays
+  /// @param stream_step from the stream of a scattering's random numbers to that of its ray's
+  void (*send)(const ScatteringStream& scatterings, ScatteringStream::Set some,
+               const std::array<ScatteringStream::Row<float>, 3>& direction, uint32_t stream_step,
+               RayStream& rays, std::size_t first) = nullptr;
 };
 
 }  // namespace freepath

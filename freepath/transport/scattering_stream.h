@@ -49,10 +49,10 @@ struct ScatteringStream {
   /// What it would bring unshadowed if the phase function were 1 and no path found it, before
   /// roulette of the path; see ShadowRoulette::least. Huge where its shadow ray does not play.
   Row<float> brightness{};
-  Row<uint32_t> is_given{};      ///< Not 0 where light_value is given: the function is not of `g`.
-  Row<float> light_value{};      ///< Phase function towards it [1/sr].
-  Row<float> light_share{};      ///< What its radiance counts for; 0 without a draw.
-  Row<float> shadow_survival{};  ///< With what probability to cast a shadow ray, (0, 1].
+  Row<uint32_t> is_given{};  ///< Not 0 where light_value is given: the function is not of `g`.
+  Row<float> light_value{};  ///< Phase function towards it [1/sr].
+  /// What its radiance counts for where a shadow ray is cast, over the probability of that; else 0.
+  Row<float> shadow_weight{};
   std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
   Row<float> next_pdf{};             ///< Density of that direction [1/sr].
   // Of branches: LobeBranch.
@@ -62,6 +62,11 @@ struct ScatteringStream {
   Row<float> lobe_roulette{};
   Row<float> lobe_survival{};  ///< With what probability a branch goes on, (0, 1].
   Row<float> lobe_chance{};    ///< With what probability a path that goes on splits.
+
+  /// Scatterings, one in each bit.
+  using Set = uint64_t;
+  static_assert(kCapacity == 64);
+  Set cast = 0;  ///< Those whose shadow ray is cast; a path that roulette ends casts none.
 };
 
 }  // namespace freepath

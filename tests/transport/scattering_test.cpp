@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -118,10 +120,12 @@ void expect_scalar(const ScatteringStream& lanes, const ScatteringStream& before
   ASSERT_EQ(lanes.light_value[i], value);
   const float pdf = lanes.light_pdf[i];
   const float share = pdf > 0 ? value / (pdf + lanes.light_found[i] * value) : 0;
-  ASSERT_EQ(lanes.light_share[i], share);
-  ASSERT_EQ(lanes.shadow_survival[i],
-            roulette.survival(vector_at(lanes.position, i), light,
-                              lanes.brightness[i] * share / lanes.survival[i]));
+  const float shadow_survival = roulette.survival(vector_at(lanes.position, i), light,
+                                                  lanes.brightness[i] * share / lanes.survival[i]);
+  const bool is_cast = share > 0 && lanes.numbers[kRouletteNumber][i] < lanes.survival[i] &&
+                       lanes.numbers[kShadowNumber][i] < shadow_survival;
+  ASSERT_EQ(lanes.shadow_weight[i], is_cast ? share / shadow_survival : 0);
+  ASSERT_EQ((lanes.cast >> i & 1) != 0, is_cast);
   expect_scalar_lobes(lanes, roulette, i);
   const PhaseSample next =
       phase.sample(before, lanes.numbers[kPhaseNumber][i], lanes.numbers[kPhaseNumber + 1][i]);
@@ -146,10 +150,48 @@ TEST(Scattering, LanesOfEveryTargetDoAsTheScalarClasses) {
       const ScatteringStream before = scatterings;
       const ShadowRoulette& roulette = roulettes[round % 3];
       lanes.scatter(scatterings, roulette);
+      if (scatterings.count < ScatteringStream::kCapacity) {
+        ASSERT_EQ(scatterings.cast >> scatterings.count, 0) << "what is no scattering casts none";
+      }
       for (std::size_t i = 0; i < scatterings.count; ++i) {
         SCOPED_TRACE(i);
         ASSERT_NO_FATAL_FAILURE(expect_scalar(scatterings, before, roulette, i));
       }
+    }
+  }
+}
+
+TEST(Scattering, LanesOfEveryTargetSendTheRaysOfSomeOneBehindTheOther) {
+  constexpr std::size_t kBefore = 3;
+  constexpr uint32_t kStep = 5;
+  const ScatteringStream::Set sets[] = {
+      0, 1, ~ScatteringStream::Set{0}, 0x8000000000000001, 0x123456789ABCDEF0, 0x00FF00FF0000FFFF};
+  for (const Simd simd : available_simd()) {
+    SCOPED_TRACE(std::string(to_string(simd)));
+    const ScatteringKernels& lanes = kernels(simd).scattering;
+    for (const ScatteringStream::Set some : sets) {
+      ScatteringStream scatterings = make_scatterings(11, ScatteringStream::kCapacity);
+      lanes.scatter(scatterings, ShadowRoulette());
+      const auto count = static_cast<std::size_t>(std::popcount(some));
+      RayStream rays;
+      rays.resize(kBefore + count);
+      rays.pixel[kBefore - 1] = 77;
+      lanes.send(scatterings, some, scatterings.next, kStep, rays, kBefore);
+      EXPECT_EQ(rays.pixel[kBefore - 1], 77U);
+      std::size_t ray = kBefore;
+      for (std::size_t i = 0; i < scatterings.count; ++i) {
+        if ((some >> i & 1) == 0) continue;
+        SCOPED_TRACE(i);
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_EQ(rays.origin[axis][ray], scatterings.position[axis][i]);
+          ASSERT_EQ(rays.direction[axis][ray], scatterings.next[axis][i]);
+        }
+        ASSERT_EQ(rays.pixel[ray], scatterings.pixel[i]);
+        ASSERT_EQ(rays.sample[ray], scatterings.sample[i]);
+        ASSERT_EQ(rays.stream[ray], scatterings.stream[i] + kStep);
+        ++ray;
+      }
+      EXPECT_EQ(ray, kBefore + count);
     }
   }
 }

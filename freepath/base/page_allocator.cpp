@@ -1,4 +1,4 @@
-#include "freepath/media/page_allocator.h"
+#include "freepath/base/page_allocator.h"
 
 #include <sys/mman.h>
 
