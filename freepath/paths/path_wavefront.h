@@ -113,8 +113,7 @@ class PathWavefront {
   std::array<float, 2> film_pair(const SampleSequence& numbers, uint32_t pixel, uint32_t sample);
   /// @param path_number of the newest job's paths
   void start_path(std::size_t path_number, ScenePath& path);
-  /// Takes in the paths that have ended, and the jobs that have with them; others start in their
-  /// places.
+  /// Takes in the paths that have ended, and such jobs; others start in their places.
   void end_paths(const PathJobSource& jobs, Film& film);
   const SampleSpectra& colors_of(const PixelSample& sample) const {
     return *setup_.colors[sample.set - setup_.first_set];
@@ -164,7 +163,7 @@ class PathWavefront {
   /// Goes on where the surface at which a ray ends is not there.
   void pass_hole(ScenePath& path);
   void scatter_at_surface(std::size_t slot, const SurfaceHit& hit);
-  /// Where a new ray starts at a surface, and the media that are there.
+  /// Where a new ray starts at a surface, and the media there.
   struct Departure {
     Vec3f origin;
     MediaSetId media;
@@ -266,7 +265,7 @@ class PathWavefront {
   void turn_scattered(std::size_t scattering, ScenePath& path);
   /// Writes the rays of those that only the next walk needs into its stream.
   void send_scattered(const Walker& walker);
-  /// Writes the rays to the lights of those that cast one, where these meet but media.
+  /// Writes the rays of those to their lights, where these meet but media.
   void send_shadows(const Walker& walker);
   /// Null where the flights of paths find all that a medium emits.
   const EmissionGuide* guide_of(MediumId medium) const {
