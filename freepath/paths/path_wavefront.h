@@ -93,8 +93,7 @@ class PathWavefront {
  private:
   /// Whether another path is to start, of a new job if there is one and room for it.
   bool has_next_path(const PathJobSource& jobs, const Film& film);
-  /// Starts a path in a slot. Those that meet nothing at all end at once.
-  /// @return false if there are no more
+  /// Starts a path in a slot, if there are any. Those that meet nothing at all end at once.
   bool fill(std::size_t slot, const PathJobSource& jobs, Film& film);
   /// Whether the first ray of a path misses everything.
   bool misses_everything(const ScenePath& path) const;
@@ -140,13 +139,13 @@ class PathWavefront {
   SurfaceHit& hit_of(const ScenePath& path) { return hits_[&path - paths_.data()]; }
   PathSample& result_of(const ScenePath& path) { return jobs_.results[path.result]; }
 
+  static bool is_grey(const ScenePath& path);
   /// Whether a path has no colour, so that what it sees of lights can be had in R, G, B.
   bool sees_rgb(const ScenePath& path) const {
     return may_see_rgb_ && !path.is_coloured && (!path.may_differ || is_grey(path));
   }
-  static bool is_grey(const ScenePath& path);
+  /// Those of the lights that it sees, and its throughput in their channels.
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
-  /// A path's throughput in the channels of these spectra.
   static SampledSpectrum light_throughput(const ScenePath& path, bool in_rgb);
   /// Adds what a path that ends sees outside of the scene.
   void escape(ScenePath& path);
@@ -366,7 +365,7 @@ class PathWavefront {
   };
   Scatterer scatterer_;
   std::optional<SceneLights::OnlyLight> only_light_;
-  float only_brightness_ = 0;    // of the only light, see brightness()
+  float only_brightness_ = 0;    // see brightness()
   SampledSpectrum only_in_rgb_;  // radiance of the only light, and what it is in only_colors_
   const SampleSpectra* only_colors_ = nullptr;
   SampledSpectrum only_in_colors_;
