@@ -2,6 +2,7 @@
 /// @file Drawing directions and table entries from uniform numbers in [0, 1).
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,15 @@
 
 namespace freepath {
 
+/// whole - angle or angle, of an angle that is not negative, without a branch: directions are
+/// random, so that each second branch would be guessed wrong.
+inline float mirrored_if(bool is_mirrored, float whole, float angle) {
+  const uint32_t mask = 0U - static_cast<uint32_t>(is_mirrored);
+  const auto chosen = [](uint32_t bits) { return std::bit_cast<float>(bits); };
+  return chosen(std::bit_cast<uint32_t>(whole) & mask) +
+         chosen(std::bit_cast<uint32_t>(angle) ^ (mask & 0x80000000U));
+}
+
 /// atan2(y, x) to within 5e-7, and 0 for the origin. An interpolant of atan(t)/t in t² through the
 /// Chebyshev nodes of [0, 1]; several times as fast as the library's, which the look-up of an
 /// environment would spend half its time in.
@@ -27,10 +37,9 @@ inline float fast_atan2(float y, float x) {
   const float low = (0.999999882F - 0.333318127F * s) + (0.199669618F - 0.140032902F * s) * (s * s);
   const float high =
       (0.0986886546F - 0.0588297531F * s) + (0.0237805186F - 0.00455979199F * s) * (s * s);
-  float angle = t * (low + high * (s * s) * (s * s));
-  if (ay > ax) angle = 0.5F * std::numbers::pi_v<float> - angle;
-  if (x < 0) angle = std::numbers::pi_v<float> - angle;
-  return std::copysign(angle, y);
+  const float angle = t * (low + high * (s * s) * (s * s));
+  const float quarter = mirrored_if(ay > ax, 0.5F * std::numbers::pi_v<float>, angle);
+  return std::copysign(mirrored_if(x < 0, std::numbers::pi_v<float>, quarter), y);
 }
 
 /// Density of a uniform direction on the sphere [1/sr].

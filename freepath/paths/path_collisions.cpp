@@ -163,9 +163,9 @@ void PathWavefront::cast_shadow(std::size_t i) {
   const Scattering& scattering = scattered_[i];
   const ScenePath& path = paths_[scattering.slot];
   float counted = scatterings_.shadow_weight[i];
-  // The radiance of a draw is that before the path's own roulette.
+  // The path is as it was before its own roulette.
   const float path_survival = scatterings_.survival[i];
-  if (!only_light_ && path_survival < 1) counted *= 1.0F / path_survival;
+  if (path_survival < 1) counted *= 1.0F / path_survival;
   const SampledSpectrum radiance =
       (only_light_ ? from_only_light(path, scattering) : scattering.radiance) * counted;
   if (is_black(radiance)) {
@@ -286,6 +286,13 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
     }
   }
   kernels_.scatter(scatterings_, shadows);
+  if (draws_lights) {
+    // Apart from all else, as no branch guesses which of them cast a ray.
+    for (ScatteringStream::Set rest = scatterings_.cast; rest != 0; rest &= rest - 1) {
+      cast_shadow(std::countr_zero(rest));
+    }
+    if (shadows_.is_open()) send_shadows(*batch.walker);
+  }
   const EmissionGuide* const guide = guide_of(medium);
   for (std::size_t i = 0; i < scatterings_.count; ++i) {
     ScenePath& path = paths_[scattered_[i].slot];
@@ -293,7 +300,6 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
         !goes_on(path, scatterings_.numbers[kRouletteNumber][i], scatterings_.survival[i]);
     if (path.is_dead) continue;
     if (is_viewed) show_collision(i);
-    if (draws_lights && (scatterings_.cast >> i & 1) != 0) cast_shadow(i);
     if (guide != nullptr && !path.is_branch) draw_emission(i, *guide);
     if (path.is_branch) {
       const float survival = scatterings_.lobe_survival[i];
@@ -311,7 +317,6 @@ void PathWavefront::scatter_in_media(const WalkBatches::Batch& batch) {
       path.emission_share = path.pdf / (path.pdf + found);
     }
   }
-  if (draws_lights && shadows_.is_open()) send_shadows(*batch.walker);
   send_scattered(*batch.walker);
   scatterings_.count = 0;
   has_given_ = false;
