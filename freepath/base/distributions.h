@@ -17,8 +17,8 @@
 
 namespace freepath {
 
-/// whole - angle or angle, of an angle that is not negative, without a branch: directions are
-/// random, so that each second branch would be guessed wrong.
+/// Mirrors an angle that is not negative, whole - angle, or leaves it as it is; without a branch:
+/// directions are random, so that each second one would be guessed wrong.
 inline float mirrored_if(bool is_mirrored, float whole, float angle) {
   const uint32_t mask = 0U - static_cast<uint32_t>(is_mirrored);
   const auto chosen = [](uint32_t bits) { return std::bit_cast<float>(bits); };

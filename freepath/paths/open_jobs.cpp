@@ -46,6 +46,7 @@ uint32_t OpenJobs::open(const PathJob& job, const Film& film) {
   const std::size_t first = first_free_slot(paths);
   const auto renew = [&](auto& values) {
     values.resize(std::max(values.size(), first + paths));
+    // New ones too: the allocator leaves what earlier jobs have written.
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), paths,
                 typename std::decay_t<decltype(values)>::value_type{});
   };

@@ -335,7 +335,7 @@ class PathWavefront {
   bool has_alpha_ = false;                                  // whether a shape of the scene has
   std::vector<std::optional<uint32_t>> shapes_of_lights_;   // by LightSample::Area::light
   std::vector<TiedSurface> ties_;                           // of the surface that a path meets
-  std::vector<ScenePath, PageAllocator<ScenePath>> paths_;  // in slots
+  std::vector<ScenePath, PageAllocator<ScenePath>> paths_;  // in slots, made as they start
   std::vector<SurfaceHit> hits_;                            // of the paths, if there are surfaces
   std::vector<uint32_t> slots_;  // those of the paths in flight, then the others
   std::size_t active_ = 0;       // paths in flight

@@ -51,7 +51,7 @@ struct ScatteringStream {
   Row<float> brightness{};
   Row<uint32_t> is_given{};  ///< Not 0 where light_value is given: the function is not of `g`.
   Row<float> light_value{};  ///< Phase function towards it [1/sr].
-  /// What its radiance counts for where a shadow ray is cast, over the probability of that; else 0.
+  /// Weight of its radiance where a shadow ray is cast, over the probability of that; else 0.
   Row<float> shadow_weight{};
   std::array<Row<float>, 3> next{};  ///< Direction of travel, after [world].
   Row<float> next_pdf{};             ///< Density of that direction [1/sr].

@@ -296,7 +296,7 @@ TEST(NetcdfVolumes, NamesAndRanksBeyondAllLimitsAreErrors) {
       EXPECT_NE(message.find("NC_MAX_NAME"), std::string::npos) << message;
     }
   }
-  // Of these the library has its own opinion.
+  // The library has its own opinion of these.
   EXPECT_NE(error(std::string(100'000, 'n'), "v", "units", 1), "");
   for (const uint32_t rank : {1025U, 50'000U}) EXPECT_NE(error("x", "v", "units", rank), "");
 }

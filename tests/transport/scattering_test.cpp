@@ -85,7 +85,7 @@ void expect_scalar_lobes(const ScatteringStream& lanes, const ShadowRoulette& ro
   const float throughput = lanes.lobe_scale[i] / lanes.survival[i];
   float root = 1;
   if (roulette.roots != nullptr) {
-    // What a ray would be cast with that is expected to bring its root alone.
+    // Probability with which a ray would be cast that is expected to bring its root alone.
     ShadowRoulette alone = roulette;
     alone.least = 1;
     root = alone.survival(vector_at(lanes.position, i), roulette.dominant, 0.9999999F);
