@@ -26,17 +26,22 @@ inline float mirrored_if(bool is_mirrored, float whole, float angle) {
          chosen(std::bit_cast<uint32_t>(angle) ^ (mask & 0x80000000U));
 }
 
-/// atan2(y, x) to within 5e-7, and 0 for the origin. An interpolant of atan(t)/t in t² through the
-/// Chebyshev nodes of [0, 1]; several times as fast as the library's, which the look-up of an
-/// environment would spend half its time in.
+/// atan(t)/t in t² as an interpolant through the Chebyshev nodes of [0, 1], good to 5e-7.
+inline constexpr float kArctangent[8] = {0.999999882F,  -0.333318127F,  0.199669618F,
+                                         -0.140032902F, 0.0986886546F,  -0.0588297531F,
+                                         0.0237805186F, -0.00455979199F};
+
+/// atan2(y, x) to within 5e-7, and 0 for the origin; several times as fast as the library's, which
+/// the look-up of an environment would spend half its time in. The lanes compute the same in the
+/// same order (base/lat_long-inl.h).
 inline float fast_atan2(float y, float x) {
   const float ax = std::abs(x);
   const float ay = std::abs(y);
   const float t = std::min(ax, ay) / std::max({ax, ay, std::numeric_limits<float>::min()});
   const float s = t * t;
-  const float low = (0.999999882F - 0.333318127F * s) + (0.199669618F - 0.140032902F * s) * (s * s);
-  const float high =
-      (0.0986886546F - 0.0588297531F * s) + (0.0237805186F - 0.00455979199F * s) * (s * s);
+  const float(&c)[8] = kArctangent;
+  const float low = (c[0] + c[1] * s) + (c[2] + c[3] * s) * (s * s);
+  const float high = (c[4] + c[5] * s) + (c[6] + c[7] * s) * (s * s);
   const float angle = t * (low + high * (s * s) * (s * s));
   const float quarter = mirrored_if(ay > ax, 0.5F * std::numbers::pi_v<float>, angle);
   return std::copysign(mirrored_if(x < 0, std::numbers::pi_v<float>, quarter), y);

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 #include "freepath/base/build_options.h"
 
@@ -14,7 +16,18 @@ class alignas(16) SampledSpectrum {
  public:
   constexpr SampledSpectrum() = default;
   constexpr explicit SampledSpectrum(float value) { values_.fill(value); }
-  constexpr SampledSpectrum(float a, float b, float c, float d = 0) : values_{a, b, c, d} {}
+  constexpr SampledSpectrum(float a, float b, float c, float d = 0) {
+    if (std::is_constant_evaluated()) {
+      values_ = {a, b, c, d};
+      return;
+    }
+    // Put together in a register: vectors that read what was written number by number would wait
+    // until it is in the cache.
+    using Four [[gnu::vector_size(4 * sizeof(float))]] = float;
+    static_assert(kMaxChannels >= 4);
+    const Four first = {a, b, c, d};
+    std::memcpy(values_.data(), &first, sizeof first);
+  }
 
   constexpr float operator[](int i) const { return values_[i]; }
   constexpr float& operator[](int i) { return values_[i]; }

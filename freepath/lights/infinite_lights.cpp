@@ -153,6 +153,9 @@ void InfiniteLights::finish() {
     ++drawn;
   }
   is_drawn_ = drawn > 0;
+  if (std::count_if(lights_.begin(), lights_.end(), is_plain_image) == 1) {
+    only_image_ = std::find_if(lights_.begin(), lights_.end(), is_plain_image) - lights_.begin();
+  }
   for (Light& light : lights_) {
     if (!light.is_drawn) continue;
     light.share = static_cast<float>((1 - kEvenPart) * light.importance / sum + kEvenPart / drawn);
@@ -199,7 +202,8 @@ LightValue InfiniteLights::plain_value(const Light& light, const Vec3f& towards)
 }
 
 void InfiniteLights::add_seen(const Light& light, const Vec3f& from, const Vec3f& direction,
-                              const SpectrumValues& values, LightSeen& all) {
+                              const SpectrumValues& values, LightSeen& all,
+                              const LightValue* known) {
   float portal_pdf = 0;
   if (light.portal) {
     portal_pdf = light.portal->pdf(from, direction);
@@ -213,16 +217,25 @@ void InfiniteLights::add_seen(const Light& light, const Vec3f& from, const Vec3f
     towards *= 1.0F / length;
     solid_angle = light.frame->light_solid_angle(length);
   }
-  const LightValue value = plain_value(light, towards);
+  const LightValue value = known != nullptr ? *known : plain_value(light, towards);
+  // Most rays miss a sun's disc.
+  if (value.pdf == 0 && std::holds_alternative<Sun>(light.radiance)) return;
   (light.is_drawn ? all.radiance : all.undrawn) += radiance_of(light, value, values);
   all.pdf += light.share * (light.portal ? portal_pdf : value.pdf * solid_angle);
 }
 
 LightSeen InfiniteLights::evaluate(const Vec3f& from, const Vec3f& direction,
-                                   const SpectrumValues& values) const {
+                                   const SpectrumValues& values, const LightValue* in_image) const {
   LightSeen all;
-  for (const Light& light : lights_) add_seen(light, from, direction, values, all);
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    add_seen(lights_[i], from, direction, values, all, i == only_image_ ? in_image : nullptr);
+  }
   return all;
+}
+
+const ImageEnvironment* InfiniteLights::only_image() const {
+  if (only_image_ == SIZE_MAX) return nullptr;
+  return std::get_if<ImageEnvironment>(&lights_[only_image_].radiance);
 }
 
 LightDirection InfiniteLights::sample_plain(const Light& light, float u0, float u1) {

@@ -43,10 +43,16 @@ class InfiniteLights {
   bool is_drawn() const { return is_drawn_; }
 
   /// Radiance that an escaping ray sees, and the density of `sample` in its direction [1/sr].
-  LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const;
+  /// @param in_image what only_image() shows there, if that is known; null: it is looked up
+  LightSeen evaluate(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values,
+                     const LightValue* in_image = nullptr) const;
   /// A draw of all lights together that are drawn, of density 0 if there is none.
   LightSample sample(const Vec3f& from, const SpectrumValues& values, float u0, float u1,
                      float u2) const;
+
+  /// The image in latitude-longitude form whose directions are those of the world, if there is one
+  /// alone, so that many can be looked up together. Else null.
+  const ImageEnvironment* only_image() const;
 
   /// The sun, if it alone is drawn: draws differ in the point of its disc then. Else null.
   const Sun* only_sun() const;
@@ -79,14 +85,21 @@ class InfiniteLights {
   /// Direction drawn of such a light, with both.
   static LightDirection sample_plain(const Light& light, float u0, float u1);
   /// Adds what a light shows, its density times its share.
+  /// @param known plain_value() there; null: it is looked up
   static void add_seen(const Light& light, const Vec3f& from, const Vec3f& direction,
-                       const SpectrumValues& values, LightSeen& all);
+                       const SpectrumValues& values, LightSeen& all,
+                       const LightValue* known = nullptr);
+  static bool is_plain_image(const Light& light) {
+    return std::holds_alternative<ImageEnvironment>(light.radiance) && !light.frame &&
+           !light.portal;
+  }
   /// Decides what of a light is drawn.
   void choose_draws(Light& light) const;
   /// The one light that is drawn; null if there are several, or none.
   const Light* only_drawn() const;
 
   std::vector<Light> lights_;
+  std::size_t only_image_ = SIZE_MAX;  // among them
   bool is_drawn_ = false;
   double fluence_ = 0;
 };

@@ -53,11 +53,16 @@ class SceneLights {
   }
 
   /// What a ray sees that leaves the scene.
-  LightSeen escape(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values) const {
-    LightSeen seen = infinite_.evaluate(from, direction, values);
+  /// @param in_image what image_around() shows there, if that is known; null: it is looked up
+  LightSeen escape(const Vec3f& from, const Vec3f& direction, const SpectrumValues& values,
+                   const LightValue* in_image = nullptr) const {
+    LightSeen seen = infinite_.evaluate(from, direction, values, in_image);
     seen.pdf *= infinite_share_;
     return seen;
   }
+  /// The image around the scene in which many escapes can be looked up together; null if there is
+  /// none, or several.
+  const ImageEnvironment* image_around() const { return infinite_.only_image(); }
 
   /// What a ray from `from` sees of an area light that it hits.
   /// @param light of SceneLightsDescription::area_lights

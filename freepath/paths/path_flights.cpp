@@ -73,6 +73,7 @@ void PathWavefront::fly() {
     }
     scatter_in_media(*batch);
   }
+  see_outside();
 }
 
 void PathWavefront::set_side(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
@@ -100,7 +101,7 @@ void PathWavefront::end_flight(std::size_t slot) {
   if (path.ends_at_surface) {
     meet_surface(slot);
   } else if (path.side == std::numeric_limits<float>::infinity()) {
-    meter_ == nullptr ? escape(path) : leave_meter(path);
+    meter_ == nullptr ? leave_scene(slot) : leave_meter(path);
   } else if (scene_.domain) {
     pass_side(path);
   } else {
@@ -160,7 +161,23 @@ void PathWavefront::take_flight(const WalkBatches::Batch& batch, std::size_t i) 
   }
 }
 
-void PathWavefront::escape(ScenePath& path) {
+void PathWavefront::leave_scene(std::size_t slot) {
+  ScenePath& path = paths_[slot];
+  if (!escapes_.has_image()) {
+    escape(path);
+    return;
+  }
+  path.is_dead = true;
+  escapes_.add(static_cast<uint32_t>(slot), path.direction);
+  if (escapes_.is_full()) see_outside();
+}
+
+void PathWavefront::see_outside() {
+  escapes_.look_up(
+      [&](uint32_t slot, const LightValue& in_image) { escape(paths_[slot], &in_image); });
+}
+
+void PathWavefront::escape(ScenePath& path, const LightValue* in_image) {
   constexpr float kFromOutside = std::numeric_limits<float>::infinity();
   path.is_dead = true;
   if (path.scatterings == 0) {
@@ -169,7 +186,7 @@ void PathWavefront::escape(ScenePath& path) {
   }
   const bool in_rgb = sees_rgb(path);
   const LightSeen light =
-      scene_.lights->escape(path.turned_at, path.direction, light_spectra(path, in_rgb));
+      scene_.lights->escape(path.turned_at, path.direction, light_spectra(path, in_rgb), in_image);
   // What next-event estimation could have found too is shared with it.
   const bool is_shared = path.pdf > 0 && path.glass == nullptr;
   const float share = is_shared ? path.pdf / (path.pdf + light.pdf) : 1.0F;

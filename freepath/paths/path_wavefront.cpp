@@ -30,7 +30,8 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       sent_(setup.slots, true),
       kernels_(setup.factory->scattering()),
       shadows_(*setup.scene, media_sets_, setup.seed, setup.slots),
-      emissions_(*setup.scene, setup.slots) {
+      emissions_(*setup.scene, setup.slots),
+      escapes_(setup.scene->lights->image_around(), setup.factory->locate()) {
   if (setup.near_lights != nullptr) {
     near_lines_.emplace(setup.slots);
     near_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots, /*is_second=*/true);
@@ -69,6 +70,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
   std::iota(slots_.begin(), slots_.end(), uint32_t{0});  // in order, as memory likes to be read
   sent_.clear();
   sent_in_vacuum_.clear();
+  escapes_.clear();
   for (std::vector<LobeBranch>& waiting : branches_) waiting.clear();
   has_more_jobs_ = true;
   while (true) {

@@ -11,6 +11,7 @@
 #include "freepath/base/page_allocator.h"
 #include "freepath/base/random.h"
 #include "freepath/paths/emission_tracer.h"
+#include "freepath/paths/escape_queue.h"
 #include "freepath/paths/flux_meter.h"
 #include "freepath/paths/flux_tally.h"
 #include "freepath/paths/glass_spheres.h"
@@ -19,7 +20,7 @@
 #include "freepath/paths/near_lights.h"
 #include "freepath/paths/open_jobs.h"
 #include "freepath/paths/path_job.h"
-#include "freepath/paths/path_scene.h"
+#include "freepath/paths/path_setup.h"
 #include "freepath/paths/path_state.h"
 #include "freepath/paths/sample_spectra.h"
 #include "freepath/paths/shadow_guide.h"
@@ -33,39 +34,6 @@ namespace freepath {
 
 /// Throughputs beyond this are about to overflow: times a radiance they still fit a float.
 inline constexpr float kLargestThroughput = 1e28F;
-
-/// What all paths of a picture share.
-struct PathSetup {
-  const PathScene* scene = nullptr;
-  const WavelengthSampler* factory = nullptr;
-  uint64_t seed = 0;
-  Absorption absorption = Absorption::kWeighted;
-  uint32_t max_scatterings = UINT32_MAX;  ///< Most scatterings at surfaces and in media together.
-  bool transparent = false;               ///< RenderSettings::transparent
-  /// Russian roulette is played where no channel's throughput reaches this.
-  float roulette_threshold = 0.25F;
-  /// Whether scatterings in emissive media also look for their light along lines of its own; where
-  /// nothing is said, if little of the medium glows.
-  std::optional<bool> samples_emission = {};
-  /// Says which shadow rays are cast and where paths split; null: all are, and none does.
-  const ShadowGuide* shadow_guide = nullptr;
-  /// Lights in or near media whose light lines bring; null: scatterings alone do.
-  const NearLights* near_lights = nullptr;
-  /// Glass through which scatterings see lamps; null: paths find their light by chance.
-  const GlassSpheres* glass_spheres = nullptr;
-  std::size_t slots = kPathsInFlight;
-  /// Pixels of the camera along the edge of a pixel of the film.
-  float pixel_edge = 1;
-  /// What the film's pixels are numbered from on for random numbers.
-  uint32_t first_random_pixel = 0;
-  /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
-  std::vector<std::shared_ptr<const SampleSpectra>> colors;
-  uint32_t first_set = 0;
-  /// The meter where paths begin, as light does, if not at the camera, and
-  /// who sums what they bring. Such paths carry one channel, and lights have no part in it.
-  const FluxMeter* meter = nullptr;
-  FluxTally* tally = nullptr;
-};
 
 /// Traces paths through a scene: to the next surface or collision, scatter with next-event
 /// estimation and multiple importance sampling [Veach97, balance heuristic], Russian roulette,
@@ -148,7 +116,12 @@ class PathWavefront {
   const SpectrumValues& light_spectra(const ScenePath& path, bool in_rgb) const;
   static SampledSpectrum light_throughput(const ScenePath& path, bool in_rgb);
   /// Adds what a path that ends sees outside of the scene.
-  void escape(ScenePath& path);
+  /// @param in_image what the image around shows, if that is known
+  void escape(ScenePath& path, const LightValue* in_image = nullptr);
+  /// The same, perhaps later: see_outside().
+  void leave_scene(std::size_t slot);
+  /// Looks up what paths see that have left the scene.
+  void see_outside();
   /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
   /// opaque one is never passed over, nor a light; ties_ are the others.
   std::optional<SurfaceHit> choose_surface(const ScenePath& path);
@@ -376,6 +349,7 @@ class PathWavefront {
   ScatteringStream::Set going_on_ = 0;  // see send_scattered()
   ShadowTracer shadows_;
   EmissionTracer emissions_;
+  EscapeQueue escapes_;
   // Where there are lights near media; else null.
   std::optional<NearLightLines> near_lines_;
   std::optional<ShadowTracer> near_shadows_;

@@ -102,6 +102,8 @@ class WavelengthSampler {
 
   /// Scatterings in media, by the instructions that walks are taken by.
   const ScatteringKernels& scattering() const { return kernels(walk_.simd).scattering; }
+  /// Where escapes stand in an image around the scene, likewise.
+  LocateDirections locate() const { return kernels(walk_.simd).locate; }
   /// Growth of the weights of paths in the medium where it is largest.
   const WeightGrowth& weight_growth() const { return weight_growth_; }
 

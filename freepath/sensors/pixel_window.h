@@ -23,6 +23,7 @@ struct PixelWindow {
   constexpr uint32_t in_picture(std::size_t pixel) const {
     // Divisions of 32 bits take a third of the time.
     const auto number = static_cast<uint32_t>(pixel);
+    if (width == full_width) return y * full_width + number;
     const auto columns = static_cast<uint32_t>(width);
     return (y + number / columns) * full_width + x + number % columns;
   }

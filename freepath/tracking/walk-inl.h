@@ -34,7 +34,7 @@ namespace freepath::HWY_NAMESPACE {
 
 /// Groups in flight: enough to hide a miss of the last cache behind the arithmetic of the others,
 /// and few enough to stay in the nearest cache (bench/README.md has the figures).
-inline constexpr int kGroups = 6;
+inline constexpr int kGroups = kLanes >= 16 ? 4 : 6;
 
 /// A group steps through super-voxels until no more than one in kSearchingShare of its lanes
 /// still looks for its tentative collision; the others go on, and those resume in the next round.

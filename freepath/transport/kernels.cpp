@@ -10,6 +10,7 @@
 // foreach_target.h comes next: it includes this file once for each target.
 #include <hwy/highway.h>
 
+#include "freepath/base/lat_long-inl.h"
 #include "freepath/transport/scattering-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -29,6 +30,7 @@ KernelTable make_table() {
   }
   table.transmittance = make_transmittance_kernels();
   table.scattering = make_scattering_kernels();
+  table.locate = &locate_directions;
   return table;
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "freepath/base/lat_long.h"
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/media/medium_view.h"
 #include "freepath/tracking/method.h"
@@ -55,11 +56,12 @@ struct Kernel {
   bool uniform_emission = false;
 };
 
-/// All methods of one target, in the order of the registry, and scatterings.
+/// All methods of one target, in the order of the registry, and what paths do beside walks.
 struct KernelTable {
   std::vector<Kernel> trackers;
   std::vector<Kernel> transmittance;
   ScatteringKernels scattering;
+  LocateDirections locate = nullptr;  ///< Where directions stand in an image of the whole sphere.
 };
 
 /// Channels of the smallest compiled walk that carries so many.

@@ -7,6 +7,7 @@
 #define FREEPATH_TRANSPORT_SCATTERING_INL_H_
 #endif
 
+#include <array>
 #include <bit>
 #include <vector>
 
@@ -21,35 +22,81 @@
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
+/// Packs values of the scatterings' rays, which mostly follow each other: a vector of them is read
+/// at a time, where a gather would take each by itself.
+class RayPacking {
+ public:
+  /// Room for the lanes behind the last scattering.
+  static constexpr std::size_t kSize = ScatteringStream::kCapacity + kLanes;
+
+  explicit RayPacking(const ScatteringStream& scatterings) {
+    const std::size_t count = scatterings.count;
+    for (std::size_t i = 0; i < count;) {
+      Window& window = windows_[window_count_++];
+      window = {scatterings.ray[i], static_cast<uint32_t>(i), 0};
+      for (uint32_t offset = 0, last = 0; offset < kLanes && offset >= last;) {
+        window.lanes |= 1U << offset;
+        if (++i == count) break;
+        last = offset + 1;
+        offset = scatterings.ray[i] - window.first;
+      }
+    }
+  }
+
+  /// @param values of all rays; may be read up to kLanes - 1 behind the last
+  template <class T>
+  HWY_INLINE void pack(const std::vector<T>& values, T (&packed)[kSize]) const {
+    for (std::size_t w = 0; w < window_count_; ++w) {
+      const Window& window = windows_[w];
+      const auto row = hn::LoadU(hn::ScalableTag<T>(), values.data() + window.first);
+      Packing(window.lanes).write(row, packed + window.slot);
+    }
+  }
+
+ private:
+  /// kLanes rays from one on.
+  struct Window {
+    uint32_t first;
+    uint32_t slot;   ///< Of the first of them that scatters.
+    uint32_t lanes;  ///< Those that scatter.
+  };
+  std::array<Window, ScatteringStream::kCapacity> windows_;
+  std::size_t window_count_ = 0;
+};
+
 inline void gather_scatterings(const RayStream& rays, const FlightStream& flights,
                                ScatteringStream& scatterings) {
-  const auto gather = [](const auto& values, VecI ray) {
-    return hn::GatherIndex(kFloat, values.data(), ray);
-  };
-  const auto gather_bits = [](const std::vector<uint32_t>& values, VecI ray) {
-    const auto* const bits = reinterpret_cast<const int32_t*>(values.data());
-    return hn::BitCast(kUint, hn::GatherIndex(kInt, bits, ray));
-  };
   constexpr uint32_t kFromWalk =
       stream_number(StreamPurpose::kScatter, 0) - stream_number(StreamPurpose::kWalk, 0);
-  const VecI count = hn::Set(kInt, static_cast<int32_t>(scatterings.count));
-  for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
-    // Lanes beyond the last one read the first ray.
-    const MaskI some = hn::Lt(hn::Iota(kInt, static_cast<int32_t>(i)), count);
-    const VecI ray =
-        hn::IfThenElseZero(some, hn::BitCast(kInt, hn::Load(kUint, &scatterings.ray[i])));
-    const VecF t = gather(flights.t, ray);
-    for (int axis = 0; axis < 3; ++axis) {
-      const VecF direction = gather(rays.direction[axis], ray);
-      hn::Store(direction, kFloat, &scatterings.direction[axis][i]);
-      hn::Store(mul_add(direction, t, gather(rays.origin[axis], ray)), kFloat,
-                &scatterings.position[axis][i]);
+  const RayPacking packing(scatterings);
+  HWY_ALIGN_MAX float t[RayPacking::kSize];
+  HWY_ALIGN_MAX float origin[RayPacking::kSize];
+  HWY_ALIGN_MAX float direction[RayPacking::kSize];
+  packing.pack(flights.t, t);
+  for (int axis = 0; axis < 3; ++axis) {
+    packing.pack(rays.origin[axis], origin);
+    packing.pack(rays.direction[axis], direction);
+    for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
+      // Lanes behind the last scattering are at the origin.
+      const MaskF some = hn::FirstN(kFloat, scatterings.count - i);
+      const VecF along = hn::MaskedLoad(some, kFloat, direction + i);
+      hn::Store(along, kFloat, &scatterings.direction[axis][i]);
+      hn::Store(mul_add(along, hn::MaskedLoad(some, kFloat, t + i),
+                        hn::MaskedLoad(some, kFloat, origin + i)),
+                kFloat, &scatterings.position[axis][i]);
     }
-    hn::Store(gather_bits(rays.pixel, ray), kUint, &scatterings.pixel[i]);
-    hn::Store(gather_bits(rays.sample, ray), kUint, &scatterings.sample[i]);
-    hn::Store(hn::Add(gather_bits(rays.stream, ray), hn::Set(kUint, kFromWalk)), kUint,
-              &scatterings.stream[i]);
   }
+  HWY_ALIGN_MAX uint32_t words[RayPacking::kSize];
+  const auto copy = [&](const std::vector<uint32_t>& values, uint32_t step, uint32_t* row) {
+    packing.pack(values, words);
+    for (std::size_t i = 0; i < scatterings.count; i += kLanes) {
+      const VecU some = hn::MaskedLoad(hn::FirstN(kUint, scatterings.count - i), kUint, words + i);
+      hn::Store(hn::Add(some, hn::Set(kUint, step)), kUint, row + i);
+    }
+  };
+  copy(rays.pixel, 0, scatterings.pixel.data());
+  copy(rays.sample, 0, scatterings.sample.data());
+  copy(rays.stream, kFromWalk, scatterings.stream.data());
 }
 
 inline void draw_scattering_numbers(ScatteringStream& scatterings, uint64_t seed, uint32_t blocks) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "freepath/base/distributions.h"
 #include "freepath/base/random.h"
 #include "freepath/lights/scene_lights.h"
 #include "freepath/spectra/wavelengths.h"
@@ -69,6 +70,41 @@ TEST(OnlyLight, DrawsOfSeveralLightsAreNotOfOne) {
   EXPECT_FALSE(has_one({sun, distant}));
   EXPECT_FALSE(has_one({distant, distant}));
   EXPECT_FALSE(has_one({sun, PointLight{.intensity = spectra().warm}}));
+}
+
+TEST(OnlyImage, EscapesThatKnowWhatItShowsSeeTheSame) {
+  const SunLight sun{.sun = Sun({.elevation = 30, .irradiance = Rgb(4, 3, 2)}, UpAxis::kY)};
+  const EnvironmentLight around{
+      .environment = ImageEnvironment(testing::rough_image(24, 12).pixels, UpAxis::kY, "around"),
+      .scale = 2};
+  const ImageInfiniteLight framed = {.image = testing::rough_image(16, 16)};
+  const auto lights_of = [](std::vector<LightDescription> all) {
+    SceneLightsDescription description;
+    description.lights = std::move(all);
+    return SceneLights(std::move(description), spectra().table);
+  };
+  EXPECT_EQ(lights_of({sun, framed}).image_around(), nullptr);
+  EXPECT_EQ(lights_of({around, around}).image_around(), nullptr);
+  const SceneLights lights = lights_of({sun, framed, around});
+  const ImageEnvironment* const image = lights.image_around();
+  ASSERT_NE(image, nullptr);
+  const SpectrumValues values = spectra().table.in_rgb();
+  RandomStream random(5, 2, 3, 4);
+  for (int i = 0; i < 200; ++i) {
+    const float u = random.uniform();
+    const Vec3f direction = i == 0 ? sun.sun.direction() : sample_sphere(u, random.uniform());
+    const LightSeen seen = lights.escape(kPlace, direction, values);
+    LightValue known = image->evaluate(direction);
+    const LightSeen same = lights.escape(kPlace, direction, values, &known);
+    EXPECT_EQ(same.radiance, seen.radiance);
+    EXPECT_EQ(same.undrawn, seen.undrawn);
+    EXPECT_EQ(same.pdf, seen.pdf);
+    // It is taken at its word, and for this image alone.
+    known.radiance += Rgb(1, 2, 3);
+    const LightSeen more = lights.escape(kPlace, direction, values, &known);
+    EXPECT_NEAR(sum_of(more.radiance + more.undrawn), sum_of(seen.radiance + seen.undrawn) + 12,
+                1e-3F * sum_of(more.radiance + more.undrawn));
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "freepath/base/random.h"
 #include "freepath/base/turn.h"
 #include "freepath/media/phase/henyey_greenstein.h"
+#include "freepath/tracking/streams.h"
 #include "freepath/transport/kernels.h"
 #include "freepath/transport/shadow_roulette.h"
 
@@ -156,6 +158,58 @@ TEST(Scattering, LanesOfEveryTargetDoAsTheScalarClasses) {
       for (std::size_t i = 0; i < scatterings.count; ++i) {
         SCOPED_TRACE(i);
         ASSERT_NO_FATAL_FAILURE(expect_scalar(scatterings, before, roulette, i));
+      }
+    }
+  }
+}
+
+TEST(Scattering, LanesOfEveryTargetTakeOverTheFlightsThatEndedInScatterings) {
+  constexpr uint32_t kRays = 400;
+  RayStream rays;
+  FlightStream flights;
+  rays.resize(kRays);
+  flights.resize(kRays);
+  RandomStream random(kSeed, 0, 0, 9);
+  for (uint32_t i = 0; i < kRays; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      rays.origin[axis][i] = random.uniform();
+      rays.direction[axis][i] = random.uniform();
+    }
+    flights.t[i] = random.uniform();
+    rays.pixel[i] = 1000 + i;
+    rays.sample[i] = 5000 + i;
+    rays.stream[i] = stream_number(StreamPurpose::kWalk, i);
+  }
+  // Next to each other, some left out, most left out, up to the last, back and forth, the same.
+  const std::vector<std::function<uint32_t(uint32_t)>> orders = {
+      [](uint32_t i) { return i; },
+      [](uint32_t i) { return 3 + i + i / 3 + i / 7; },
+      [](uint32_t i) { return 6 * i; },
+      [](uint32_t i) { return kRays - ScatteringStream::kCapacity + i; },
+      [](uint32_t i) { return i * 37 % kRays; },
+      [](uint32_t i) { return 9 + i / 2; }};
+  for (const Simd simd : available_simd()) {
+    SCOPED_TRACE(std::string(to_string(simd)));
+    for (const auto& order : orders) {
+      for (const std::size_t count : {1U, 15U, 16U, 17U, 50U, 64U}) {
+        SCOPED_TRACE(count);
+        ScatteringStream scatterings;
+        scatterings.count = count;
+        for (uint32_t i = 0; i < count; ++i) scatterings.ray[i] = order(i) % kRays;
+        kernels(simd).scattering.gather(rays, flights, scatterings);
+        for (std::size_t i = 0; i < count; ++i) {
+          SCOPED_TRACE(i);
+          const uint32_t ray = scatterings.ray[i];
+          for (int axis = 0; axis < 3; ++axis) {
+            const float direction = rays.direction[axis][ray];
+            ASSERT_EQ(scatterings.direction[axis][i], direction);
+            ASSERT_EQ(scatterings.position[axis][i],
+                      rays.origin[axis][ray] + direction * flights.t[ray]);
+          }
+          ASSERT_EQ(scatterings.pixel[i], rays.pixel[ray]);
+          ASSERT_EQ(scatterings.sample[i], rays.sample[ray]);
+          ASSERT_EQ(scatterings.stream[i], stream_number(StreamPurpose::kScatter, ray));
+        }
       }
     }
   }
