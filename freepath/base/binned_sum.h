@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace freepath {
 
@@ -46,6 +47,28 @@ class BinnedSum {
     }
   }
 
+  /// Adds finite numbers, as add() does one after the other; of several in half the time.
+  static void add_all(Array& bins, int8_t& top, std::span<const double> numbers) {
+    double largest = 0;
+    for (const double number : numbers) largest = std::max(largest, std::abs(number));
+    if (largest >= kLimits[index(top)]) raise(bins, top, bin_of(largest));
+    Array shifted{};
+    std::array<double, kBins> units;
+    std::array<double, kBins> per_unit;
+    for (std::size_t i = 0; i < kBins; ++i) {
+      units[i] = kUnits[index(top - static_cast<int>(i))];
+      per_unit[i] = kUnits[index(static_cast<int>(i) - top)];
+    }
+    for (double rest : numbers) {
+      for (std::size_t i = 0; i < kBins; ++i) {
+        const double count = rest * per_unit[i] + kShift;
+        shifted[i] += std::bit_cast<int64_t>(count) - std::bit_cast<int64_t>(kShift);
+        rest -= (count - kShift) * units[i];
+      }
+    }
+    for (std::size_t i = 0; i < kBins; ++i) bins[i] += shifted[i];
+  }
+
   /// Adds what another sum holds.
   static void merge(Array& bins, int8_t& top, Array other, int8_t other_top) {
     if (other_top > top) raise(bins, top, other_top);
@@ -63,6 +86,8 @@ class BinnedSum {
   }
 
  private:
+  /// 1.5 · 2^52, around which doubles are whole numbers that differ as their bits do.
+  static constexpr double kShift = 6755399441055744.0;
   static constexpr int kFirst = -16;
   static constexpr int kCount = 33;
   static constexpr std::size_t index(int bin) { return static_cast<std::size_t>(bin - kFirst); }
@@ -92,10 +117,7 @@ class BinnedSum {
   }
 
   /// The nearest whole number, of those between two the even one: magnitudes below 2^51.
-  static double rounded(double number) {
-    constexpr double kShift = 6755399441055744.0;  // 1.5 · 2^52, where doubles are whole numbers
-    return (number + kShift) - kShift;
-  }
+  static double rounded(double number) { return (number + kShift) - kShift; }
 
   /// Makes room for larger numbers; the lowest bins are given up.
   static void raise(Array& bins, int8_t& top, int8_t new_top) {

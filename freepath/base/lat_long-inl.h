@@ -31,8 +31,7 @@ HWY_INLINE VecF fast_atan2_lanes(VecF y, VecF x) {
   const VecF s2 = hn::Mul(s, s);
   const auto cubic_from = [&](int first) {
     const float* const c = kArctangent + first;
-    return hn::Add(mul_add(set(c[1]), s, set(c[0])),
-                   hn::Mul(mul_add(set(c[3]), s, set(c[2])), s2));
+    return hn::Add(mul_add(set(c[1]), s, set(c[0])), hn::Mul(mul_add(set(c[3]), s, set(c[2])), s2));
   };
   const VecF high = hn::Mul(hn::Mul(cubic_from(4), s2), s2);
   const VecF angle = hn::Mul(t, hn::Add(cubic_from(0), high));

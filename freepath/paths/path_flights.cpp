@@ -73,7 +73,7 @@ void PathWavefront::fly() {
     }
     scatter_in_media(*batch);
   }
-  see_outside();
+  escapes_.finish();
 }
 
 void PathWavefront::set_side(ScenePath& path, const Vec3f& origin, const Vec3f& direction) const {
@@ -168,8 +168,8 @@ void PathWavefront::leave_scene(std::size_t slot) {
     return;
   }
   path.is_dead = true;
+  __builtin_prefetch(&result_of(path), 1);  // finish() writes it
   escapes_.add(static_cast<uint32_t>(slot), path.direction);
-  if (escapes_.is_full()) see_outside();
 }
 
 void PathWavefront::see_outside() {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <span>
+#include <vector>
 
 #include "freepath/paths/path_wavefront.h"
 
@@ -106,35 +107,47 @@ void PathWavefront::add_spectrum(const OpenJobs::Job& done, std::size_t sample, 
 void PathWavefront::add_to_film(const OpenJobs::Job& done, Film& film) const {
   const PathJob& job = done.job;
   const auto per_sample = static_cast<std::size_t>(setup_.factory->paths_per_sample());
-  const float share = 1.0F / static_cast<float>(per_sample);
-  for (std::size_t i = 0; i < job.sample_count(); ++i) {
-    // The paths of the channels, always in the same order.
-    const std::size_t first = done.result_of(i, per_sample);
-    PathSample sum = jobs_.results[first];
-    LayerSample layers = jobs_.layers[first];
-    if (per_sample > 1) {
-      sum = {};
-      layers = {};
-      for (std::size_t c = 0; c < per_sample; ++c) {
-        const PathSample& part = jobs_.results[first + c];
-        sum.radiance += part.radiance;
-        sum.overflowed |= part.overflowed;
-        sum.lookups += part.lookups;
-        sum.alpha += part.alpha * share;
-        sum.albedo += part.albedo * share;
-        const float weight = part.depth_weight * share;
-        if (weight > 0) {
-          const float total = sum.depth_weight + weight;
-          sum.depth = (sum.depth * sum.depth_weight + part.depth * weight) / total;
-          sum.depth_weight = total;
-        }
-        layers += jobs_.layers[first + c];
-      }
+  std::vector<PathSample> samples(job.samples);
+  std::vector<LayerSample> layers(jobs_.layers.on() ? job.samples : 0);
+  for (std::size_t i = 0; i < job.sample_count(); i += job.samples) {
+    const std::size_t pixel = job.pixel_of(i);
+    for (std::size_t k = 0; k < job.samples; ++k) {
+      const std::size_t first = done.result_of(i + k, per_sample);
+      samples[k] = sum_of_paths(first, per_sample);
+      if (!layers.empty()) layers[k] = sum_of_layers(first, per_sample);
+      if (records_spectra_) add_spectrum(done, i + k, film);
     }
-    film.add(job.pixel_of(i), sum, layers);
-    if (records_spectra_) add_spectrum(done, i, film);
-    if ((i + 1) % job.samples == 0) film.end_rounds(job.pixel_of(i), job.rounds);
+    film.add(pixel, samples, layers);
+    film.end_rounds(pixel, job.rounds);
   }
+}
+
+PathSample PathWavefront::sum_of_paths(std::size_t first, std::size_t count) const {
+  if (count == 1) return jobs_.results[first];
+  PathSample sum;
+  const float share = 1.0F / static_cast<float>(count);
+  // The paths of the channels, always in the same order.
+  for (std::size_t c = 0; c < count; ++c) {
+    const PathSample& part = jobs_.results[first + c];
+    sum.radiance += part.radiance;
+    sum.overflowed |= part.overflowed;
+    sum.lookups += part.lookups;
+    sum.alpha += part.alpha * share;
+    sum.albedo += part.albedo * share;
+    const float weight = part.depth_weight * share;
+    if (weight > 0) {
+      const float total = sum.depth_weight + weight;
+      sum.depth = (sum.depth * sum.depth_weight + part.depth * weight) / total;
+      sum.depth_weight = total;
+    }
+  }
+  return sum;
+}
+
+LayerSample PathWavefront::sum_of_layers(std::size_t first, std::size_t count) const {
+  LayerSample sum = jobs_.layers[first];
+  for (std::size_t c = 1; c < count; ++c) sum += jobs_.layers[first + c];
+  return sum;
 }
 
 }  // namespace freepath

@@ -84,6 +84,7 @@ bool PathWavefront::trace(const PathJobSource& jobs, Film& film) {
                      deposit(path, cell, weight[0]);
                    });
     emissions_.trace(paths_, counts_.free_paths);
+    see_outside();
     if (scope.stopped()) return false;
     end_paths(jobs, film);
   }

@@ -118,9 +118,9 @@ class PathWavefront {
   /// Adds what a path that ends sees outside of the scene.
   /// @param in_image what the image around shows, if that is known
   void escape(ScenePath& path, const LightValue* in_image = nullptr);
-  /// The same, perhaps later: see_outside().
+  /// The same, perhaps not before see_outside().
   void leave_scene(std::size_t slot);
-  /// Looks up what paths see that have left the scene.
+  /// Looks up what the paths see that wait for it.
   void see_outside();
   /// The surface that a path meets where its ray ends, if any is there. Of several at the place an
   /// opaque one is never passed over, nor a light; ties_ are the others.
@@ -293,6 +293,10 @@ class PathWavefront {
 
   void finish(ScenePath& path);
   void add_to_film(const OpenJobs::Job& done, Film& film) const;
+  /// What the paths of a sample have found together.
+  /// @param first place of the first one's result
+  PathSample sum_of_paths(std::size_t first, std::size_t count) const;
+  LayerSample sum_of_layers(std::size_t first, std::size_t count) const;
   void add_to_tally(const OpenJobs::Job& done);
   /// @param sample of the job
   void add_spectrum(const OpenJobs::Job& done, std::size_t sample, Film& film) const;

@@ -153,11 +153,11 @@ bool SceneMedium::is_constant(const SpectrumTable& table) const {
 SampledSpectrum SceneMedium::albedo(std::size_t component, const SpectrumValues& spectra) const {
   if (components_.empty()) return SampledSpectrum(1.0F);
   const SceneMediumComponent& values = components_[std::min(component, components_.size() - 1)];
+  const SampledSpectrum& sigma_s = spectra[values.sigma_s];
+  const SampledSpectrum sigma_t = sigma_s + spectra[values.sigma_a];
   SampledSpectrum albedo;
-  for (int c = 0; c < spectra.channels(); ++c) {
-    const float sigma_s = spectra[values.sigma_s][c];
-    const float sigma_t = sigma_s + spectra[values.sigma_a][c];
-    albedo[c] = sigma_t > 0 ? sigma_s / sigma_t : 0;
+  for (int c = 0; c < kMaxChannels; ++c) {
+    albedo[c] = sigma_s[c] / (sigma_t[c] > 0 ? sigma_t[c] : 1.0F);
   }
   return albedo;
 }

@@ -16,9 +16,13 @@ namespace freepath {
 namespace {
 
 bool all_finite(const PathSample& sample) {
-  return is_finite(sample.radiance) && is_finite(sample.albedo) && std::isfinite(sample.alpha) &&
-         std::isfinite(sample.depth) && std::isfinite(sample.depth_weight) &&
-         std::isfinite(sample.lookups);
+  const auto zero_if_finite = [](float value) { return value - value; };
+  float sum = zero_if_finite(sample.alpha) + zero_if_finite(sample.depth) +
+              zero_if_finite(sample.depth_weight) + zero_if_finite(sample.lookups);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    sum += zero_if_finite(sample.radiance[channel]) + zero_if_finite(sample.albedo[channel]);
+  }
+  return sum == 0;
 }
 
 /// A sum of finite floats may still be too large for a float.
@@ -75,11 +79,11 @@ Film::Film(const PixelWindow& window, LayerSet layers, const WavelengthBuckets& 
   if (window.width < 1 || window.height < 1) {
     fail("the film has {}x{} pixels; it needs at least 1x1", window.width, window.height);
   }
-  pixels_.resize(static_cast<std::size_t>(window.width) * window.height);
+  pixels_.resize(static_cast<std::size_t>(window.width) * window.height, Pixel());
   offsets_ = offsets_of(layers, sums_per_pixel_);
-  sums_.resize(pixels_.size() * sums_per_pixel_);
+  sums_.resize(pixels_.size() * sums_per_pixel_, Sum2::Array{});
   sum_tops_.resize(sums_.size(), Sum2::kEmpty);
-  bucket_sums_.resize(pixels_.size() * buckets.count);
+  bucket_sums_.resize(pixels_.size() * buckets.count, BucketSum());
 }
 
 double Film::Pixel::square(int channel) const {
@@ -100,30 +104,59 @@ double Film::sum_of(std::size_t pixel, Sum which, int channel) const {
   return Sum2::value(sums_[index], sum_tops_[index]);
 }
 
-void Film::add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample) {
+namespace {
+
+/// Samples that are added together.
+constexpr std::size_t kSamplesAtOnce = 32;
+
+}  // namespace
+
+void Film::add(std::size_t pixel, std::span<const PathSample> samples,
+               std::span<const LayerSample> layer_samples) {
+  for (std::size_t i = 0; i < samples.size(); i += kSamplesAtOnce) {
+    const std::size_t count = std::min(samples.size() - i, kSamplesAtOnce);
+    add_some(pixel, samples.subspan(i, count),
+             layer_samples.empty() ? layer_samples : layer_samples.subspan(i, count));
+  }
+}
+
+void Film::add_some(std::size_t pixel, std::span<const PathSample> samples,
+                    std::span<const LayerSample> layer_samples) {
   Pixel& sums = pixels_[pixel];
-  if (!all_finite(sample)) {
-    ++sums.non_finite;
-    return;
+  std::array<std::array<double, kSamplesAtOnce>, kPixelSums> values;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const PathSample& sample = samples[i];
+    if (!all_finite(sample)) {
+      ++sums.non_finite;
+      continue;
+    }
+    const bool is_even = (first_sample(pixel) + sums.samples) % 2 == 0;
+    if (is_even) {
+      add_to(pixel, kEven, sample.radiance);
+      ++sums.even_samples;
+    }
+    if (layers_.has_any(kPathLayers)) add_layers(pixel, layer_samples[i]);
+    for (int channel = 0; channel < kChannels; ++channel) {
+      values[kRadiance + channel][count] = sample.radiance[channel];
+      values[kAlbedo + channel][count] = sample.albedo[channel];
+    }
+    values[kAlpha][count] = sample.alpha;
+    values[kDepth][count] = static_cast<double>(sample.depth) * sample.depth_weight;
+    values[kDepthWeight][count] = sample.depth_weight;
+    ++count;
+    sums.lookups += static_cast<uint64_t>(sample.lookups);
+    if (sample.overflowed) ++sums.overflows;
+    ++sums.samples;
   }
-  const bool is_even = (first_sample(pixel) + sums.samples) % 2 == 0;
-  if (is_even) {
-    add_to(pixel, kEven, sample.radiance);
-    ++sums.even_samples;
+  for (int sum = 0; sum < kPixelSums; ++sum) {
+    Sum2::add_all(sums.sums[sum], sums.tops[sum], std::span(values[sum]).first(count));
   }
-  if (layers_.has_any(kPathLayers)) add_layers(pixel, layer_sample);
   for (int channel = 0; channel < kChannels; ++channel) {
-    const double value = sample.radiance[channel];
-    sums.add(kRadiance + channel, value);
-    Sum3::add(sums.squares[channel], sums.square_tops[channel], value * value);
-    sums.add(kAlbedo + channel, sample.albedo[channel]);
+    const std::span<double> squares = std::span(values[kRadiance + channel]).first(count);
+    for (double& value : squares) value *= value;
+    Sum3::add_all(sums.squares[channel], sums.square_tops[channel], squares);
   }
-  sums.add(kAlpha, sample.alpha);
-  sums.add(kDepth, static_cast<double>(sample.depth) * sample.depth_weight);
-  sums.add(kDepthWeight, sample.depth_weight);
-  sums.lookups += static_cast<uint64_t>(sample.lookups);
-  if (sample.overflowed) ++sums.overflows;
-  ++sums.samples;
 }
 
 void Film::add_layers(std::size_t pixel, const LayerSample& sample) {

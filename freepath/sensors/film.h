@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "freepath/base/binned_sum.h"
+#include "freepath/base/page_allocator.h"
 #include "freepath/base/rgb.h"
 #include "freepath/base/sampled_spectrum.h"
 #include "freepath/io/image.h"
@@ -110,7 +111,13 @@ class Film {
   /// as an internal error (non_finite_samples).
   /// @param pixel row · width + column
   /// @param layer_sample looked at only where one of kPathLayers is recorded; has to be finite
-  void add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample = {});
+  void add(std::size_t pixel, const PathSample& sample, const LayerSample& layer_sample = {}) {
+    add(pixel, std::span(&sample, 1), std::span(&layer_sample, 1));
+  }
+  /// Adds the next samples of a pixel.
+  /// @param layer_samples as many, or none where no kPathLayers are recorded
+  void add(std::size_t pixel, std::span<const PathSample> samples,
+           std::span<const LayerSample> layer_samples);
 
   /// Adds a sample's spectral radiance to the buckets of its wavelengths.
   /// @param wavelengths [nm], those of the first channels of the radiance
@@ -195,7 +202,6 @@ class Film {
     std::array<int8_t, kPixelSums> tops = filled<kPixelSums>();
     std::array<int8_t, kChannels> square_tops = filled<kChannels>();
 
-    void add(int sum, double value) { Sum2::add(sums[sum], tops[sum], value); }
     double value(int sum) const { return Sum2::value(sums[sum], tops[sum]); }
     double square(int channel) const;
   };
@@ -213,6 +219,8 @@ class Film {
   using SumOffsets = std::array<int, kSums>;
   static SumOffsets offsets_of(LayerSet layers, int& count);
 
+  void add_some(std::size_t pixel, std::span<const PathSample> samples,
+                std::span<const LayerSample> layer_samples);
   void add_layers(std::size_t pixel, const LayerSample& sample);
   void add_to(std::size_t pixel, Sum which, const Rgb& value);
   /// Value of a sum that the film has.
@@ -225,11 +233,14 @@ class Film {
   std::optional<RgbChromaticities> chromaticities_;
   LayerSet layers_;
   uint32_t first_sample_ = 0;
-  std::vector<Pixel> pixels_;
+  /// In huge pages: a pass goes through all pixels.
+  template <class T>
+  using Pixels = std::vector<T, PageAllocator<T>>;
+  Pixels<Pixel> pixels_;
   int sums_per_pixel_ = 0;
   SumOffsets offsets_{};
-  std::vector<Sum2::Array> sums_;
-  std::vector<int8_t> sum_tops_;
+  Pixels<Sum2::Array> sums_;
+  Pixels<int8_t> sum_tops_;
   WavelengthBuckets buckets_;
   /// Sum of a bucket of a pixel.
   struct BucketSum {
@@ -238,7 +249,7 @@ class Film {
     int8_t top = Sum2::kEmpty;
     std::array<int8_t, 3> unused = {};
   };
-  std::vector<BucketSum> bucket_sums_;
+  Pixels<BucketSum> bucket_sums_;
 };
 
 }  // namespace freepath

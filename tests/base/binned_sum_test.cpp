@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "freepath/base/random.h"
@@ -66,6 +67,35 @@ TEST(BinnedSum, IsTheSameInAnyOrderAndGrouping) {
     expect_same_in_any_order<3>(exponents);
   }
   expect_same_in_any_order<3>(250);
+}
+
+template <std::size_t kBins>
+void expect_same_of_several(int exponents) {
+  const std::vector<double> numbers = numbers_of(1000, exponents, kBins == 2);
+  // All at once, one by one, and in parts of all lengths, empty ones among them.
+  for (const std::size_t longest : {1000U, 1U, 2U, 37U}) {
+    Sum<kBins> one_by_one;
+    Sum<kBins> in_parts;
+    std::size_t length = longest;
+    for (std::size_t first = 0; first < numbers.size(); first += length) {
+      length = std::min(longest == 37 ? first % 38 : longest, numbers.size() - first);
+      const auto part = std::span(numbers).subspan(first, length);
+      BinnedSum<kBins>::add_all(in_parts.bins, in_parts.top, part);
+      for (const double number : part) one_by_one.add(number);
+      ASSERT_EQ(in_parts, one_by_one) << first;
+      if (length > 0) continue;
+      length = 1;
+      in_parts.add(numbers[first]);
+      one_by_one.add(numbers[first]);
+    }
+  }
+}
+
+TEST(BinnedSum, AddsSeveralAsOneByOne) {
+  for (const int exponents : {0, 10, 60, 120}) {
+    expect_same_of_several<2>(exponents);
+    expect_same_of_several<3>(2 * exponents);
+  }
 }
 
 TEST(BinnedSum, IsAsNearAsItsBinsSay) {

@@ -36,8 +36,9 @@ std::vector<Vec3f> directions() {
 }
 
 TEST(LatLong, LanesOfEveryTargetFindThePlacesThatTheScalarFunctionsFind) {
-  const LatLongGrid grids[] = {{1, 1, UpAxis::kY},     {2, 1, UpAxis::kZ},   {5, 3, UpAxis::kY},
-                               {512, 256, UpAxis::kY}, {7, 40, UpAxis::kZ},  {4096, 2048, UpAxis::kZ}};
+  const LatLongGrid grids[] = {{1, 1, UpAxis::kY},  {2, 1, UpAxis::kZ},
+                               {5, 3, UpAxis::kY},  {512, 256, UpAxis::kY},
+                               {7, 40, UpAxis::kZ}, {4096, 2048, UpAxis::kZ}};
   const std::vector<Vec3f> all = directions();
   for (const Simd simd : available_simd()) {
     SCOPED_TRACE(std::string(to_string(simd)));
