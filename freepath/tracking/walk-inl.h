@@ -33,7 +33,8 @@ HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
 /// Groups in flight: enough to hide a miss of the last cache behind the arithmetic of the others,
-/// and few enough to stay in the nearest cache (bench/README.md has the figures).
+/// and few enough to stay in the nearest cache, of which groups of sixteen lanes take twice as much
+/// (docs/performance.md and bench/README.md have the figures).
 inline constexpr int kGroups = kLanes >= 16 ? 4 : 6;
 
 /// A group steps through super-voxels until no more than one in kSearchingShare of its lanes

@@ -22,14 +22,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace freepath::HWY_NAMESPACE {
 
-/// Packs values of the scatterings' rays, which mostly follow each other: a vector of them is read
-/// at a time, where a gather would take each by itself.
+/// Packs values of the scatterings' rays, which mostly follow each other: a vector of sixteen is
+/// read at a time, where a gather would take each by itself. Of fewer lanes gathers take less.
 class RayPacking {
  public:
   /// Room for the lanes behind the last scattering.
   static constexpr std::size_t kSize = ScatteringStream::kCapacity + kLanes;
 
-  explicit RayPacking(const ScatteringStream& scatterings) {
+  explicit RayPacking(const ScatteringStream& scatterings) : scatterings_(scatterings) {
+    if constexpr (kGathers) return;
     const std::size_t count = scatterings.count;
     for (std::size_t i = 0; i < count;) {
       Window& window = windows_[window_count_++];
@@ -46,6 +47,16 @@ class RayPacking {
   /// @param values of all rays; may be read up to kLanes - 1 behind the last
   template <class T>
   HWY_INLINE void pack(const std::vector<T>& values, T (&packed)[kSize]) const {
+    if constexpr (kGathers) {
+      const std::size_t count = scatterings_.count;
+      for (std::size_t i = 0; i < count; i += kLanes) {
+        const VecI ray = hn::BitCast(
+            kInt, hn::MaskedLoad(hn::FirstN(kUint, count - i), kUint, &scatterings_.ray[i]));
+        hn::Store(hn::GatherIndex(hn::ScalableTag<T>(), values.data(), ray), hn::ScalableTag<T>(),
+                  packed + i);
+      }
+      return;
+    }
     for (std::size_t w = 0; w < window_count_; ++w) {
       const Window& window = windows_[w];
       const auto row = hn::LoadU(hn::ScalableTag<T>(), values.data() + window.first);
@@ -60,6 +71,8 @@ class RayPacking {
     uint32_t slot;   ///< Of the first of them that scatters.
     uint32_t lanes;  ///< Those that scatter.
   };
+  static constexpr bool kGathers = kLanes < 16;
+  const ScatteringStream& scatterings_;
   std::array<Window, ScatteringStream::kCapacity> windows_;
   std::size_t window_count_ = 0;
 };
