@@ -31,7 +31,8 @@ PathWavefront::PathWavefront(const PathSetup& setup)
       kernels_(setup.factory->scattering()),
       shadows_(*setup.scene, media_sets_, setup.seed, setup.slots),
       emissions_(*setup.scene, setup.slots),
-      escapes_(setup.scene->lights->image_around(), setup.factory->locate()) {
+      escapes_(setup.scene->lights ? setup.scene->lights->image_around() : nullptr,
+               setup.factory->locate()) {
   if (setup.near_lights != nullptr) {
     near_lines_.emplace(setup.slots);
     near_shadows_.emplace(scene_, media_sets_, setup.seed, setup.slots, /*is_second=*/true);
