@@ -23,6 +23,8 @@ struct LatLong {
   float u, v;
 };
 
+/// The point of such an image that a direction sees.
+/// @param direction unit [world]
 inline LatLong lat_long(const Vec3f& direction, UpAxis up) {
   const Vec3f d = to_y_up(direction, up);
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
@@ -54,6 +56,7 @@ struct LatLongPlace {
   float right, down;  ///< How far the point is from the first, in pixels, in [0, 1).
 };
 
+/// The place of a point of an image.
 /// @param x in pixels from the left edge
 /// @param y in pixels from the top
 [[gnu::always_inline]] inline LatLongPlace place_of(const LatLongGrid& grid, float x, float y) {

@@ -18,7 +18,7 @@
 
 namespace freepath {
 
-/// What all paths of a picture share.
+/// Settings, and parts of the scene, that all paths of a picture share.
 struct PathSetup {
   const PathScene* scene = nullptr;
   const WavelengthSampler* factory = nullptr;
@@ -40,7 +40,7 @@ struct PathSetup {
   std::size_t slots = kPathsInFlight;
   /// Pixels of the camera along the edge of a pixel of the film.
   float pixel_edge = 1;
-  /// What the film's pixels are numbered from on for random numbers.
+  /// Number of the film's first pixel for random numbers.
   uint32_t first_random_pixel = 0;
   /// Spectra of the sets of wavelengths that samples of a pass may have, from first_set on.
   std::vector<std::shared_ptr<const SampleSpectra>> colors;

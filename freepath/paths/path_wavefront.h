@@ -293,7 +293,7 @@ class PathWavefront {
 
   void finish(ScenePath& path);
   void add_to_film(const OpenJobs::Job& done, Film& film) const;
-  /// What the paths of a sample have found together.
+  /// Sum of what the paths of a sample have found.
   /// @param first place of the first one's result
   PathSample sum_of_paths(std::size_t first, std::size_t count) const;
   LayerSample sum_of_layers(std::size_t first, std::size_t count) const;

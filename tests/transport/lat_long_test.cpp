@@ -44,7 +44,7 @@ TEST(LatLong, LanesOfEveryTargetFindThePlacesThatTheScalarFunctionsFind) {
     SCOPED_TRACE(std::string(to_string(simd)));
     for (const LatLongGrid& grid : grids) {
       SCOPED_TRACE(grid.width);
-      // Of all fillings of a stream one.
+      // Streams that are filled to every count.
       for (std::size_t first = 0, count = 1; first + count <= all.size();
            first += count, count = count % LatLongStream::kCapacity + 1) {
         LatLongStream stream;
